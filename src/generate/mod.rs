@@ -1,0 +1,1 @@
+//! Model problems and the writers of their meshes.

@@ -1,0 +1,8 @@
+//! Streaming, out-of-core finite-element mesh quality.
+
+pub mod error;
+pub mod generate;
+pub mod measures;
+pub mod mesh;
+
+pub use error::{Error, Result};

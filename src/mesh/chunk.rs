@@ -1,0 +1,92 @@
+//! A chunk: a fixed number of elements of one shape, the unit that goes through the pipeline.
+
+use super::Shape;
+
+/// The most elements that one chunk holds.
+pub const CHUNK: usize = 4096;
+
+/// At most [`CHUNK`] elements of one shape. Chunks are made once, at the start, and handed round: a chunk never grows.
+#[derive(Debug)]
+pub struct Chunk {
+    shape: Shape,
+    /// Number of the piece that the elements came from, and of this chunk within it.
+    pub(crate) origin: Origin,
+    /// Row of each corner in the node table: `corners` rows an element.
+    rows: Vec<u32>,
+    /// The element's own number, one an element.
+    labels: Vec<u64>,
+}
+
+/// Where a chunk stands in the file: what the merge is ordered by.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Origin {
+    /// Number of the piece, in file order.
+    pub piece: u64,
+    /// Number of the chunk within the piece.
+    pub chunk: u32,
+}
+
+impl Default for Chunk {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Chunk {
+    /// An empty chunk with room for [`CHUNK`] elements of any shape.
+    pub fn new() -> Self {
+        Self {
+            shape: Shape::Tetrahedron,
+            origin: Origin::default(),
+            rows: Vec::with_capacity(CHUNK * Shape::MAX_CORNERS),
+            labels: Vec::with_capacity(CHUNK),
+        }
+    }
+
+    /// Empties the chunk and makes it one of `shape`.
+    pub fn reset(&mut self, shape: Shape, origin: Origin) {
+        self.shape = shape;
+        self.origin = origin;
+        self.rows.clear();
+        self.labels.clear();
+    }
+
+    /// Adds an element. `rows` are the shape's corners as rows of the node table.
+    #[inline]
+    pub fn push(&mut self, label: u64, rows: &[u32]) {
+        debug_assert!(rows.len() == self.shape.corners() && !self.is_full());
+        self.labels.push(label);
+        self.rows.extend_from_slice(rows);
+    }
+
+    /// Whether no further element fits.
+    #[inline]
+    pub fn is_full(&self) -> bool {
+        self.labels.len() >= CHUNK
+    }
+
+    /// Whether it holds no element.
+    pub fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// The shape of all its elements.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// The elements' own numbers.
+    pub fn labels(&self) -> &[u64] {
+        &self.labels
+    }
+
+    /// The corners of all elements as rows of the node table, element by element.
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
+    }
+}
