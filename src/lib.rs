@@ -1,7 +1,9 @@
 //! Streaming, out-of-core finite-element mesh quality.
 
 pub mod error;
+pub mod formats;
 pub mod generate;
+pub mod input;
 pub mod measures;
 pub mod mesh;
 

@@ -1,0 +1,94 @@
+//! Formats: bytes to nodes and elements.
+//!
+//! A format does two things. It *outlines* a file: says where the node records and the element records stand, cut into
+//! pieces of bounded size. And its layouts *decode* one piece. It knows no thread, no channel and no measure. Every
+//! format is one file here and one row of [`FORMATS`].
+
+mod batch;
+pub mod binary;
+#[cfg(test)]
+pub(crate) mod reading;
+mod sink;
+pub mod text;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::Result;
+use crate::input::{Input, Source};
+
+pub use batch::NodeBatch;
+pub use sink::{Chunks, ElementSink, Ledger, TypeCount};
+
+/// The number of bytes that a piece aims at. It does not depend on threads or budget: chunks, and so the last bits of
+/// every mean, follow from it.
+pub const PIECE_BYTES: u64 = 1 << 20;
+
+/// A mesh format: a row of [`FORMATS`].
+pub trait Format: Sync {
+    /// The name that users type: `--mesh-format gmsh`.
+    fn name(&self) -> &'static str;
+    /// What the format is, its versions and encodings that are read.
+    fn title(&self) -> &'static str;
+    /// File extensions without the dot, in lower case; only a hint.
+    fn extensions(&self) -> &'static [&'static str];
+    /// What is looked for in the content, for the error that lists it.
+    fn looks_for(&self) -> &'static str;
+    /// Whether the first bytes (at most [`HEAD_BYTES`]) are of this format.
+    fn detect(&self, head: &[u8]) -> bool;
+    /// Says where the node and element records stand, in file order. Headers are not believed: what is yielded must lie
+    /// in the file.
+    fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()>;
+}
+
+/// How much of a file detection looks at.
+pub const HEAD_BYTES: usize = 64 << 10;
+
+/// Takes the pieces of a file as a format finds them.
+pub trait Outline {
+    /// A piece of node records. Pieces of nodes may come before, between or after those of elements.
+    fn nodes(&mut self, piece: Piece<dyn NodeLayout>) -> Result<()>;
+    /// A piece of element records.
+    fn elements(&mut self, piece: Piece<dyn ElementLayout>) -> Result<()>;
+    /// Elements that are counted and not measured, and that no piece will speak of.
+    fn count(&mut self, kind: &crate::mesh::ElementType, count: u64) -> Result<()>;
+}
+
+/// A run of records that one call decodes, in bounded memory.
+#[derive(Debug)]
+pub struct Piece<L: ?Sized> {
+    /// Who can decode it.
+    pub layout: Arc<L>,
+    /// What of the layout's records: byte positions or record numbers, as the layout likes.
+    pub span: Range<u64>,
+}
+
+impl<L: ?Sized> Clone for Piece<L> {
+    fn clone(&self) -> Self {
+        Self { layout: Arc::clone(&self.layout), span: self.span.clone() }
+    }
+}
+
+/// Decodes node records.
+pub trait NodeLayout: Send + Sync {
+    /// The file that the records stand in, for errors and progress.
+    fn source(&self) -> &Source;
+    /// Decodes the nodes of `span`. Coordinates must be finite: the batch refuses others.
+    fn decode(&self, span: Range<u64>, out: &mut NodeBatch) -> Result<()>;
+}
+
+/// Decodes element records.
+pub trait ElementLayout: Send + Sync {
+    /// The file that the records stand in, for errors and progress.
+    fn source(&self) -> &Source;
+    /// Decodes the elements of `span`.
+    fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()>;
+}
+
+/// Every format that is read; detection tries them in this order.
+pub static FORMATS: &[&dyn Format] = &[];
+
+/// The format named `name`.
+pub fn find(name: &str) -> Option<&'static dyn Format> {
+    FORMATS.iter().copied().find(|f| f.name() == name)
+}

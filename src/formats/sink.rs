@@ -1,0 +1,209 @@
+//! Takes the elements of one piece from a layout: turns node numbers into rows of the node table, puts the corners into
+//! our order, fills chunks and hands on the full ones.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use crate::error::{Error, Kind, Result};
+use crate::input::Spot;
+use crate::mesh::{Chunk, Class, ElementType, Nodes, Origin, Shape};
+
+/// Where full chunks go and empty ones come from.
+pub trait Chunks {
+    /// An empty chunk.
+    fn empty(&mut self) -> Result<Chunk>;
+    /// Hands on a chunk that is full, or the last of its piece.
+    fn hand_on(&mut self, chunk: Chunk) -> Result<()>;
+}
+
+/// What one piece held besides the chunks.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Ledger {
+    /// Elements by type, in the order in which the types were met.
+    pub types: Vec<TypeCount>,
+    /// Measured elements that name a node which the file does not define; they were left out.
+    pub missing_nodes: u64,
+    /// Measured elements that name one corner node twice.
+    pub repeated_nodes: u64,
+}
+
+/// How many elements of a type were met.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TypeCount {
+    /// The type's own name in its format.
+    pub name: Cow<'static, str>,
+    /// What is done with them.
+    pub class: Class,
+    /// Number of elements.
+    pub count: u64,
+}
+
+impl Ledger {
+    /// Counts elements of a type.
+    pub fn count(&mut self, kind: &ElementType, count: u64) {
+        let row = self.row(&kind.name, &kind.class);
+        self.types[row].count += count;
+    }
+
+    /// The place of a type in `types`.
+    fn row(&mut self, name: &Cow<'static, str>, class: &Class) -> usize {
+        self.types.iter().position(|t| t.name == *name && t.class == *class).unwrap_or_else(|| {
+            self.types.push(TypeCount { name: name.clone(), class: class.clone(), count: 0 });
+            self.types.len() - 1
+        })
+    }
+
+    /// Takes in what another piece held.
+    pub fn merge(&mut self, other: &Ledger) {
+        for theirs in &other.types {
+            let row = self.row(&theirs.name, &theirs.class);
+            self.types[row].count += theirs.count;
+        }
+        self.missing_nodes += other.missing_nodes;
+        self.repeated_nodes += other.repeated_nodes;
+    }
+}
+
+/// Takes the elements of one piece.
+pub struct ElementSink<'a> {
+    /// Where the record stands that is being decoded: set it before each record, and errors will name the place.
+    pub at: Spot,
+    nodes: &'a Nodes,
+    chunks: &'a mut dyn Chunks,
+    open: [Option<Chunk>; Shape::ALL.len()],
+    origin: Origin,
+    allow_missing: bool,
+    ledger: Ledger,
+    /// The types met so far, each with its row of the ledger; the type at hand is the one at `current`.
+    types: Vec<(Arc<ElementType>, usize)>,
+    current: usize,
+}
+
+impl<'a> ElementSink<'a> {
+    /// A sink for the piece with the number `piece`.
+    pub fn new(nodes: &'a Nodes, chunks: &'a mut dyn Chunks, piece: u64, allow_missing: bool) -> Self {
+        Self {
+            at: Spot::Unknown,
+            nodes,
+            chunks,
+            open: [const { None }; Shape::ALL.len()],
+            origin: Origin { piece, chunk: 0 },
+            allow_missing,
+            ledger: Ledger::default(),
+            types: Vec::new(),
+            current: 0,
+        }
+    }
+
+    /// Adds an element. `label` is its own number, `ids` are its nodes as they stand in the record.
+    #[inline]
+    pub fn element(&mut self, label: u64, kind: &Arc<ElementType>, ids: &[u64]) -> Result<()> {
+        self.count_one(kind);
+        match &kind.class {
+            Class::Measured { shape, corners, .. } => self.measured(label, *shape, corners, ids),
+            Class::Counted(_) => {
+                ids.iter().filter_map(|id| self.nodes.row(*id)).for_each(|row| self.nodes.mark_used(row));
+                Ok(())
+            }
+        }
+    }
+
+    #[inline]
+    fn count_one(&mut self, kind: &Arc<ElementType>) {
+        if self.types.get(self.current).is_none_or(|(known, _)| !Arc::ptr_eq(known, kind)) {
+            self.current =
+                self.types.iter().position(|(known, _)| Arc::ptr_eq(known, kind)).unwrap_or_else(|| {
+                    let row = self.ledger.row(&kind.name, &kind.class);
+                    self.types.push((Arc::clone(kind), row));
+                    self.types.len() - 1
+                });
+        }
+        self.ledger.types[self.types[self.current].1].count += 1;
+    }
+
+    /// Counts elements of a type that is not measured, where their nodes are not known.
+    pub fn count(&mut self, kind: &ElementType, count: u64) {
+        self.ledger.count(kind, count);
+    }
+
+    #[inline]
+    fn measured(&mut self, label: u64, shape: Shape, corners: &[u8], ids: &[u64]) -> Result<()> {
+        let mut rows = [0u32; Shape::MAX_CORNERS];
+        let rows = &mut rows[..corners.len()];
+        for (row, corner) in rows.iter_mut().zip(corners) {
+            let Some(&id) = ids.get(*corner as usize) else {
+                return Err(Error::malformed(
+                    format!("{} nodes or more", corners.len()),
+                    format!("{}", ids.len()),
+                ));
+            };
+            match self.nodes.row(id) {
+                Some(known) => *row = known,
+                None => return self.missing(label, id),
+            }
+        }
+        if ids.len() > corners.len() {
+            for id in ids {
+                match self.nodes.row(*id) {
+                    Some(row) => self.nodes.mark_used(row),
+                    None => return self.missing(label, *id),
+                }
+            }
+        }
+        rows.iter().for_each(|row| self.nodes.mark_used(*row));
+        self.ledger.repeated_nodes += u64::from(has_repeats(rows));
+        self.push(label, shape, rows)
+    }
+
+    #[inline]
+    fn push(&mut self, label: u64, shape: Shape, rows: &[u32]) -> Result<()> {
+        let slot = &mut self.open[shape.index()];
+        let chunk = match slot {
+            Some(chunk) => chunk,
+            None => {
+                let mut chunk = self.chunks.empty()?;
+                chunk.reset(shape, self.origin);
+                self.origin.chunk += 1;
+                slot.insert(chunk)
+            }
+        };
+        chunk.push(label, rows);
+        if chunk.is_full()
+            && let Some(full) = slot.take()
+        {
+            self.chunks.hand_on(full)?;
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn missing(&mut self, element: u64, node: u64) -> Result<()> {
+        if self.allow_missing {
+            self.ledger.missing_nodes += 1;
+            return Ok(());
+        }
+        Err(Error::new(Kind::MissingNode { element, node }))
+    }
+
+    /// Ends the piece: hands on what is left and says what was met. The number of chunks comes with it.
+    pub fn finish(mut self) -> Result<(Ledger, u32)> {
+        for slot in &mut self.open {
+            if let Some(chunk) = slot.take() {
+                self.chunks.hand_on(chunk)?;
+            }
+        }
+        Ok((self.ledger, self.origin.chunk))
+    }
+}
+
+/// Whether some row comes twice.
+#[inline]
+fn has_repeats(rows: &[u32]) -> bool {
+    let mut repeats = false;
+    for (i, row) in rows.iter().enumerate() {
+        for other in &rows[..i] {
+            repeats |= row == other;
+        }
+    }
+    repeats
+}

@@ -1,0 +1,261 @@
+//! What text formats share: numbers as Fortran and C write them, lines and tokens with their places, cutting at line ends.
+
+use std::ops::Range;
+
+use crate::error::{Error, Result};
+use crate::formats::PIECE_BYTES;
+use crate::input::{Input, Limits, Source};
+
+/// A line or a token, and the byte of the file that it starts at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Placed<'t> {
+    /// Byte of the file.
+    pub at: u64,
+    /// The bytes, without the line's end.
+    pub bytes: &'t [u8],
+}
+
+/// A whole token as a real number: `1.5`, `.5`, `5.`, `+1e3`, `1.5D+03`, `1.5d3`, `1.5-3`. Infinite and NaN are numbers
+/// here; the node batch refuses them.
+#[inline]
+pub fn real(token: &[u8]) -> Option<f64> {
+    match fast_float2::parse::<f64, _>(token) {
+        Ok(value) => Some(value),
+        Err(_) => fortran_real(token),
+    }
+}
+
+/// Fortran's spellings of an exponent, rewritten to `e`.
+#[cold]
+fn fortran_real(token: &[u8]) -> Option<f64> {
+    let mut buffer = [0u8; 64];
+    if token.len() + 1 > buffer.len() {
+        return None;
+    }
+    let mut len = 0;
+    let mut exponent = false;
+    for (i, &byte) in token.iter().enumerate() {
+        let starts_exponent = match byte {
+            b'd' | b'D' | b'q' | b'Q' => true,
+            b'e' | b'E' => {
+                exponent = true;
+                false
+            }
+            b'+' | b'-' => i > 0 && !exponent && (token[i - 1].is_ascii_digit() || token[i - 1] == b'.'),
+            _ => false,
+        };
+        if starts_exponent {
+            if exponent {
+                return None;
+            }
+            exponent = true;
+            buffer[len] = b'e';
+            len += 1;
+        }
+        if !byte.is_ascii_alphabetic() || matches!(byte, b'e' | b'E') {
+            buffer[len] = byte;
+            len += 1;
+        } else if !starts_exponent {
+            return None;
+        }
+    }
+    fast_float2::parse(&buffer[..len]).ok()
+}
+
+/// A whole token as a number without a sign (a leading `+` is allowed).
+#[inline]
+pub fn integer(token: &[u8]) -> Option<u64> {
+    let digits = token.strip_prefix(b"+").unwrap_or(token);
+    if digits.is_empty() || digits.len() > 19 {
+        return None;
+    }
+    let mut value = 0u64;
+    for byte in digits {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        value = value * 10 + u64::from(digit);
+    }
+    Some(value)
+}
+
+/// A whole token as a number with a sign.
+#[inline]
+pub fn signed(token: &[u8]) -> Option<i64> {
+    match token.strip_prefix(b"-") {
+        Some(digits) => integer(digits).and_then(|v| 0i64.checked_sub_unsigned(v)),
+        None => integer(token).and_then(|v| i64::try_from(v).ok()),
+    }
+}
+
+/// The lines of `bytes`, which start at byte `at` of the file. A line's end is `\n` or `\r\n`.
+pub fn lines(at: u64, bytes: &[u8]) -> impl Iterator<Item = Placed<'_>> {
+    let mut from = 0;
+    std::iter::from_fn(move || {
+        if from >= bytes.len() {
+            return None;
+        }
+        let start = from;
+        let end = memchr::memchr(b'\n', &bytes[start..]).map_or(bytes.len(), |k| start + k);
+        from = end + 1;
+        let line = &bytes[start..end];
+        Some(Placed { at: at + start as u64, bytes: line.strip_suffix(b"\r").unwrap_or(line) })
+    })
+}
+
+/// The tokens of `bytes` between blanks of any kind.
+pub fn tokens(at: u64, bytes: &[u8]) -> impl Iterator<Item = Placed<'_>> {
+    let mut from = 0;
+    std::iter::from_fn(move || {
+        let start = from + bytes[from..].iter().position(|b| !b.is_ascii_whitespace())?;
+        let end = bytes[start..].iter().position(u8::is_ascii_whitespace).map_or(bytes.len(), |k| start + k);
+        from = end;
+        Some(Placed { at: at + start as u64, bytes: &bytes[start..end] })
+    })
+}
+
+/// Reads a text file line by line through windows, for outlines: in bounded memory, and with every line's place.
+#[derive(Debug)]
+pub struct LineReader<'s> {
+    source: &'s Source,
+    limit: usize,
+    /// The next line starts here.
+    at: u64,
+    window: Option<(u64, crate::input::Window<'s>)>,
+}
+
+impl<'s> LineReader<'s> {
+    /// A reader that starts at byte `at`.
+    pub fn new(source: &'s Source, limits: &Limits, at: u64) -> Self {
+        Self { source, limit: limits.line_bytes, at, window: None }
+    }
+
+    /// The byte that the next line starts at.
+    pub fn position(&self) -> u64 {
+        self.at
+    }
+
+    /// Goes on at byte `at`.
+    pub fn seek(&mut self, at: u64) {
+        self.at = at;
+    }
+
+    /// The next line, or `None` at the end of the file. A line over the limit is an error.
+    pub fn next_line(&mut self) -> Result<Option<Placed<'_>>> {
+        const STEP: u64 = 4 << 20;
+        if self.at >= self.source.len() {
+            return Ok(None);
+        }
+        let at = self.at;
+        let holds = |start: u64, len: usize| at >= start && at < start + len as u64;
+        let end_in = |start: u64, bytes: &[u8]| memchr::memchr(b'\n', &bytes[(at - start) as usize..]);
+        let found = match &self.window {
+            Some((start, window)) if holds(*start, window.len()) => end_in(*start, window),
+            _ => None,
+        };
+        if found.is_none() {
+            let window = self.source.window(at..at + STEP.max(self.limit as u64 + 1));
+            self.window = Some((at, window));
+        }
+        let Some((start, window)) = &self.window else { return Ok(None) };
+        let rest = &window[(at - start) as usize..];
+        let len = found.or_else(|| end_in(*start, window)).unwrap_or(rest.len());
+        if len > self.limit {
+            let error = Error::limit("length of a line", format!("{} bytes", self.limit));
+            return Err(self.source.place(error, crate::input::Spot::Text(at)));
+        }
+        self.at = at + len as u64 + 1;
+        let line = &rest[..len];
+        Ok(Some(Placed { at, bytes: line.strip_suffix(b"\r").unwrap_or(line) }))
+    }
+}
+
+/// Cuts `range` into pieces of about [`PIECE_BYTES`] that end with a line.
+pub fn cut_at_lines(
+    input: &Input,
+    source: &Source,
+    range: Range<u64>,
+    mut piece: impl FnMut(Range<u64>) -> Result<()>,
+) -> Result<()> {
+    let mut from = range.start;
+    while from < range.end {
+        let to = end_of_line(input, source, from + PIECE_BYTES, range.end)?;
+        piece(from..to)?;
+        from = to;
+    }
+    Ok(())
+}
+
+/// The byte after the end of the line that byte `at` stands on, at most `end`.
+pub fn end_of_line(input: &Input, source: &Source, at: u64, end: u64) -> Result<u64> {
+    if at >= end {
+        return Ok(end);
+    }
+    let limit = input.limits.line_bytes as u64;
+    let window = source.window(at..end.min(at + limit + 1));
+    match memchr::memchr(b'\n', &window) {
+        Some(k) => Ok(at + k as u64 + 1),
+        None if (window.len() as u64) <= limit => Ok(end),
+        None => {
+            let error = Error::limit("length of a line", format!("{limit} bytes"));
+            Err(source.place(error, crate::input::Spot::Text(at)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reals_of_fortran_and_c() {
+        let rows: [(&str, Option<f64>); 18] = [
+            ("1.5", Some(1.5)),
+            ("-.5", Some(-0.5)),
+            ("5.", Some(5.0)),
+            ("+1.5", Some(1.5)),
+            ("1.5D+03", Some(1500.0)),
+            ("1.5d3", Some(1500.0)),
+            ("1.D0", Some(1.0)),
+            ("1.5-3", Some(0.0015)),
+            ("-7.-1", Some(-0.7)),
+            ("2.3+2", Some(230.0)),
+            ("1e5", Some(1e5)),
+            ("1.5E+003", Some(1500.0)),
+            ("", None),
+            ("1.5x", None),
+            ("1.5-3-3", None),
+            ("1_0", None),
+            ("--1", None),
+            ("1.5e5d5", None),
+        ];
+        for (text, value) in rows {
+            assert_eq!(real(text.as_bytes()), value, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn integers() {
+        let rows: [(&str, Option<i64>); 7] = [
+            ("7", Some(7)),
+            ("+7", Some(7)),
+            ("-7", Some(-7)),
+            ("", None),
+            ("-", None),
+            ("7.", None),
+            ("99999999999999999999", None),
+        ];
+        for (text, value) in rows {
+            assert_eq!(signed(text.as_bytes()), value, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn lines_and_tokens_know_their_place() {
+        let found: Vec<_> = lines(10, b"ab\r\n\ncd").map(|l| (l.at, l.bytes.to_vec())).collect();
+        assert_eq!(found, [(10, b"ab".to_vec()), (14, vec![]), (15, b"cd".to_vec())]);
+        let found: Vec<_> = tokens(10, b"  a bc\n d ").map(|t| (t.at, t.bytes.to_vec())).collect();
+        assert_eq!(found, [(12, b"a".to_vec()), (14, b"bc".to_vec()), (18, b"d".to_vec())]);
+    }
+}

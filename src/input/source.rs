@@ -1,0 +1,109 @@
+//! One file as the formats see it: bytes by position, a name, and errors that name the place.
+
+use std::fs::File;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::mapped::{Mapped, Window};
+use crate::error::{At, Error, Result, excerpt};
+
+/// Where a decoder stands, as a byte of the file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Spot {
+    /// Not known.
+    #[default]
+    Unknown,
+    /// In text: errors name the line.
+    Text(u64),
+    /// In binary data: errors name the byte.
+    Binary(u64),
+}
+
+/// A mapped file (or its unpacked contents) with the name that the user knows it by.
+#[derive(Debug)]
+pub struct Source {
+    path: PathBuf,
+    mapped: Mapped,
+}
+
+impl Source {
+    /// Maps `file`, which the user knows as `path`.
+    pub fn new(path: &Path, file: &File) -> Result<Self> {
+        let mapped = Mapped::new(file).map_err(|e| Error::unreadable(path, e))?;
+        Ok(Self { path: path.to_owned(), mapped })
+    }
+
+    /// The name that the user knows the file by.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of bytes (after unpacking).
+    pub fn len(&self) -> u64 {
+        self.mapped.len()
+    }
+
+    /// Whether there are no bytes.
+    pub fn is_empty(&self) -> bool {
+        self.mapped.is_empty()
+    }
+
+    /// A window on `range`, cut to the file's end; its pages are given back when it is dropped.
+    pub fn window(&self, range: Range<u64>) -> Window<'_> {
+        self.mapped.window(range)
+    }
+
+    /// A few bytes at a place, cut to the file's end.
+    pub fn peek(&self, range: Range<u64>) -> &[u8] {
+        self.mapped.peek(range)
+    }
+
+    /// Tells the system that the bytes of `range` will be wanted soon.
+    pub fn will_need(&self, range: Range<u64>) {
+        self.mapped.will_need(range);
+    }
+
+    /// The number, from 1, of the line that byte `at` stands on. Counts from the start of the file: for errors only.
+    pub fn line_of(&self, at: u64) -> u64 {
+        const STEP: u64 = 8 << 20;
+        let end = at.min(self.len());
+        let mut lines = 1;
+        let mut from = 0;
+        while from < end {
+            let window = self.window(from..end.min(from + STEP));
+            lines += memchr::memchr_iter(b'\n', &window).count() as u64;
+            from += STEP;
+        }
+        lines
+    }
+
+    /// Adds this file and the place `spot` to an error that names none.
+    pub fn place(&self, error: Error, spot: Spot) -> Error {
+        if error.place().is_some() || error.is_resource() {
+            return error.in_file(&self.path);
+        }
+        match spot {
+            Spot::Unknown => error,
+            Spot::Text(at) => error.at(At::Line(self.line_of(at))),
+            Spot::Binary(at) => error.at(At::Byte(at)),
+        }
+        .in_file(&self.path)
+    }
+
+    /// An error about text: the line of byte `at`, what was expected there and what stands there.
+    pub fn malformed_text(&self, at: u64, expected: impl Into<String>) -> Error {
+        Error::malformed(expected, excerpt(self.peek(at..at + 48)))
+            .at(At::Line(self.line_of(at)))
+            .in_file(&self.path)
+    }
+
+    /// An error about binary data: byte `at`, what was expected there and what was found.
+    pub fn malformed_binary(&self, at: u64, expected: impl Into<String>, found: impl Into<String>) -> Error {
+        Error::malformed(expected, found).at(At::Byte(at)).in_file(&self.path)
+    }
+
+    /// The error of a file that ends at byte `at` or before, where `expected` should follow.
+    pub fn truncated(&self, expected: impl Into<String>) -> Error {
+        self.malformed_binary(self.len(), expected, "the end of the file")
+    }
+}

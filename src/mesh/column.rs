@@ -1,0 +1,207 @@
+//! A column of equal rows that lives in memory while the budget lasts and in a mapped, unlinked scratch file after.
+//! Readers see one slice either way.
+
+use std::fs::File;
+use std::marker::PhantomData;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use bytemuck::Pod;
+use memmap2::MmapMut;
+
+use crate::error::{Error, Result};
+use crate::input::{Scratch, ScratchFile};
+
+/// A number of bytes that may be held in memory, shared by all who hold some.
+#[derive(Debug, Clone)]
+pub struct Budget {
+    left: Arc<AtomicU64>,
+}
+
+impl Budget {
+    /// A budget of `bytes`.
+    pub fn new(bytes: u64) -> Self {
+        Self { left: Arc::new(AtomicU64::new(bytes)) }
+    }
+
+    /// Takes `bytes` of the budget, or nothing.
+    pub fn take(&self, bytes: u64) -> bool {
+        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(bytes)).is_ok()
+    }
+
+    /// Gives `bytes` back.
+    pub fn give_back(&self, bytes: u64) {
+        self.left.fetch_add(bytes, Ordering::Relaxed);
+    }
+}
+
+/// A column that is being filled.
+#[derive(Debug)]
+pub struct ColumnBuilder<T> {
+    rows: Vec<T>,
+    taken: u64,
+    spilled: Option<ScratchFile>,
+    len: usize,
+    budget: Budget,
+    scratch: Scratch,
+}
+
+/// A filled column: a slice, wherever it lives.
+#[derive(Debug)]
+pub struct Column<T> {
+    store: Store<T>,
+    /// What to give back to the budget in the end.
+    taken: u64,
+    budget: Budget,
+}
+
+#[derive(Debug)]
+enum Store<T> {
+    Memory(Vec<T>),
+    Mapped { map: MmapMut, rows: PhantomData<T> },
+}
+
+impl<T: Pod> ColumnBuilder<T> {
+    /// An empty column.
+    pub fn new(budget: &Budget, scratch: &Scratch) -> Self {
+        Self {
+            rows: Vec::new(),
+            taken: 0,
+            spilled: None,
+            len: 0,
+            budget: budget.clone(),
+            scratch: scratch.clone(),
+        }
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Appends rows.
+    pub fn extend(&mut self, rows: &[T]) -> Result<()> {
+        self.len += rows.len();
+        if self.spilled.is_none() && !self.make_room(rows.len()) {
+            let mut file = self.scratch.file()?;
+            file.write(bytemuck::cast_slice(&self.rows))?;
+            self.rows = Vec::new();
+            self.budget.give_back(std::mem::take(&mut self.taken));
+            self.spilled = Some(file);
+        }
+        match &mut self.spilled {
+            Some(file) => file.write(bytemuck::cast_slice(rows)),
+            None => {
+                self.rows.extend_from_slice(rows);
+                Ok(())
+            }
+        }
+    }
+
+    /// Ends filling.
+    pub fn finish(mut self) -> Result<Column<T>> {
+        let (budget, taken) = (self.budget.clone(), self.taken);
+        match self.spilled.take() {
+            None => Ok(Column { store: Store::Memory(self.rows), taken, budget }),
+            Some(file) => Ok(Column { store: map(&file.into_file()?)?, taken, budget }),
+        }
+    }
+
+    /// Makes room in memory, if the budget has it.
+    fn make_room(&mut self, more: usize) -> bool {
+        let needed = self.rows.len() + more;
+        if needed <= self.rows.capacity() {
+            return true;
+        }
+        // Half as much again: pages that are not touched yet cost nothing, and growing moves no bytes.
+        let capacity = needed.max(self.rows.capacity() + self.rows.capacity() / 2);
+        let bytes = ((capacity - self.rows.capacity()) * size_of::<T>()) as u64;
+        if !self.budget.take(bytes) {
+            return false;
+        }
+        self.taken += bytes;
+        self.rows.reserve_exact(capacity - self.rows.len());
+        true
+    }
+}
+
+impl<T: Pod> Column<T> {
+    /// `len` rows of zero bytes, to be filled in any order.
+    pub fn zeroed(len: usize, budget: &Budget, scratch: &Scratch) -> Result<Self> {
+        let bytes = (len * size_of::<T>()) as u64;
+        if budget.take(bytes) {
+            let rows = bytemuck::allocation::zeroed_vec(len);
+            return Ok(Self { store: Store::Memory(rows), taken: bytes, budget: budget.clone() });
+        }
+        let file = scratch.file()?.into_file()?;
+        file.set_len(bytes).map_err(|e| Error::resource("scratch space", e))?;
+        Ok(Self { store: map(&file)?, taken: 0, budget: budget.clone() })
+    }
+
+    /// The rows.
+    #[inline]
+    pub fn rows(&self) -> &[T] {
+        match &self.store {
+            Store::Memory(rows) => rows,
+            Store::Mapped { map, .. } => bytemuck::cast_slice(map),
+        }
+    }
+
+    /// The rows, to be changed.
+    pub fn rows_mut(&mut self) -> &mut [T] {
+        match &mut self.store {
+            Store::Memory(rows) => rows,
+            Store::Mapped { map, .. } => bytemuck::cast_slice_mut(map),
+        }
+    }
+
+    /// Whether the rows live in a scratch file.
+    pub fn is_spilled(&self) -> bool {
+        matches!(self.store, Store::Mapped { .. })
+    }
+}
+
+impl<T> Drop for Column<T> {
+    fn drop(&mut self) {
+        self.budget.give_back(self.taken);
+    }
+}
+
+/// Maps a scratch file for reading and writing.
+#[expect(unsafe_code, reason = "a map cannot be made safely: the file may change under it")]
+fn map<T: Pod>(file: &File) -> Result<Store<T>> {
+    if file.metadata().map_err(|e| Error::resource("scratch space", e))?.len() == 0 {
+        return Ok(Store::Memory(Vec::new()));
+    }
+    // SAFETY: the file has no name any more and no other handle: nobody else can change it or cut it.
+    let map = unsafe { MmapMut::map_mut(file) }.map_err(|e| Error::resource("address space", e))?;
+    Ok(Store::Mapped { map, rows: PhantomData })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_is_the_same_in_memory_and_in_scratch() {
+        let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
+        for budget in [0, 100, 1 << 20] {
+            let budget = Budget::new(budget);
+            let mut builder = ColumnBuilder::<u32>::new(&budget, &scratch);
+            for i in 0..100u32 {
+                builder.extend(&[i, 2 * i]).expect("scratch");
+            }
+            let column = builder.finish().expect("scratch");
+            assert_eq!(column.rows().len(), 200);
+            assert!(
+                (0..100)
+                    .all(|i| column.rows()[2 * i] == i as u32 && column.rows()[2 * i + 1] == 2 * i as u32)
+            );
+        }
+    }
+}
