@@ -6,5 +6,10 @@ pub mod generate;
 pub mod input;
 pub mod measures;
 pub mod mesh;
+pub mod pipeline;
+pub mod report;
+pub mod summary;
 
 pub use error::{Error, Result};
+pub use pipeline::{Options, Progress, score, score_reader};
+pub use summary::Summary;

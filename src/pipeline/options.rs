@@ -1,0 +1,89 @@
+//! What a caller may ask of a run, and how it can watch the run go.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::input::Limits;
+use crate::summary::Judgement;
+
+/// What a caller may ask of a run.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Number of worker threads, at least 1.
+    pub threads: usize,
+    /// Bytes of memory for the node table and the buffers; what does not fit goes to scratch.
+    pub memory: u64,
+    /// Folder for scratch files.
+    pub scratch: PathBuf,
+    /// Most bytes of scratch.
+    pub scratch_bytes: u64,
+    /// The format's name; without it the content decides.
+    pub format: Option<String>,
+    /// Codes of the measures that the summary shall hold; empty for all.
+    pub measures: Vec<String>,
+    /// Count elements that name missing nodes instead of refusing the file.
+    pub allow_missing_nodes: bool,
+    /// Limits that guard the machine.
+    pub limits: Limits,
+    /// What the mesh is judged by.
+    pub judgement: Judgement,
+    /// Whether the summary tells of the run.
+    pub run_info: bool,
+    /// Where the run notes how far it is.
+    pub progress: Option<Arc<Progress>>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            memory: 256 << 20,
+            scratch: std::env::temp_dir(),
+            scratch_bytes: 4 << 40,
+            format: None,
+            measures: Vec::new(),
+            allow_missing_nodes: false,
+            limits: Limits::default(),
+            judgement: Judgement::default(),
+            run_info: true,
+            progress: None,
+        }
+    }
+}
+
+/// How far a run is. Readers may look at any time.
+#[derive(Debug, Default)]
+pub struct Progress {
+    pieces: AtomicU64,
+    pieces_done: AtomicU64,
+    elements: AtomicU64,
+}
+
+impl Progress {
+    /// Notes that `count` more pieces are known.
+    pub(crate) fn expect(&self, count: u64) {
+        self.pieces.fetch_add(count, Ordering::Relaxed);
+    }
+
+    /// Notes that a piece is done and how many elements it held.
+    pub(crate) fn done(&self, elements: u64) {
+        self.pieces_done.fetch_add(1, Ordering::Relaxed);
+        self.elements.fetch_add(elements, Ordering::Relaxed);
+    }
+
+    /// Number of pieces (about 1 MiB each) that are known so far.
+    pub fn pieces(&self) -> u64 {
+        self.pieces.load(Ordering::Relaxed)
+    }
+
+    /// Number of pieces that are done.
+    pub fn pieces_done(&self) -> u64 {
+        self.pieces_done.load(Ordering::Relaxed)
+    }
+
+    /// Number of elements that are measured.
+    pub fn elements(&self) -> u64 {
+        self.elements.load(Ordering::Relaxed)
+    }
+}
