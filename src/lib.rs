@@ -8,6 +8,7 @@ pub mod measures;
 pub mod mesh;
 pub mod pipeline;
 pub mod report;
+pub mod statistics;
 pub mod summary;
 
 pub use error::{Error, Result};

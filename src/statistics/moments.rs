@@ -1,0 +1,249 @@
+//! Moments of up to five values that are observed together: means, deviations, co-moments, extremes.
+//!
+//! A block of values is summed in two passes (mean, then deviations from it); blocks are merged by the pairwise update
+//! of Chan, Golub and LeVeque (1979), which is Welford's for blocks of one.
+
+/// The most values that are observed together.
+pub const MOST: usize = 5;
+/// Pairs of them.
+const PAIRS: usize = MOST * (MOST - 1) / 2;
+/// Partial sums in a block: fixed, so that every machine adds in the same order.
+const STRIDE: usize = 8;
+
+/// Smallest value with the position that it was met at first, and largest value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// Smallest value.
+    pub min: f64,
+    /// Where the smallest value was met first.
+    pub min_at: u64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl Extremes {
+    /// Of nothing.
+    pub const NONE: Extremes = Extremes { min: f64::INFINITY, min_at: u64::MAX, max: f64::NEG_INFINITY };
+
+    /// Of a block of values that stand at `first`, `first + 1` and so on.
+    pub fn of(values: &[f64], first: u64) -> Self {
+        let (mut min, mut max) = ([f64::INFINITY; STRIDE], [f64::NEG_INFINITY; STRIDE]);
+        let (blocks, rest) = values.as_chunks::<STRIDE>();
+        for block in blocks {
+            for lane in 0..STRIDE {
+                min[lane] = if block[lane] < min[lane] { block[lane] } else { min[lane] };
+                max[lane] = if block[lane] > max[lane] { block[lane] } else { max[lane] };
+            }
+        }
+        let min = min.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
+        let max = max.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
+        let place = values.iter().position(|&v| v == min).unwrap_or(0);
+        Self { min, min_at: first + place as u64, max }
+    }
+
+    /// Takes in others. Of equal minima the one with the smaller position stays.
+    pub fn merge(&mut self, other: &Self) {
+        if other.min < self.min || (other.min == self.min && other.min_at < self.min_at) {
+            (self.min, self.min_at) = (other.min, other.min_at);
+        }
+        self.max = self.max.max(other.max);
+    }
+}
+
+/// Moments of values that are observed together; `extremes` speak of positions within what was counted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moments {
+    /// Number of observations.
+    pub count: u64,
+    /// Mean of each value.
+    pub mean: [f64; MOST],
+    /// Sum of squared deviations of each value from its mean.
+    pub deviations: [f64; MOST],
+    /// Sum of products of the deviations of two values; see [`pair`].
+    co_deviations: [f64; PAIRS],
+    /// Extremes of each value.
+    pub extremes: [Extremes; MOST],
+}
+
+/// The place of the pair `i < j` among the pairs.
+const fn pair(i: usize, j: usize) -> usize {
+    j * (j - 1) / 2 + i
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            mean: [0.0; MOST],
+            deviations: [0.0; MOST],
+            co_deviations: [0.0; PAIRS],
+            extremes: [Extremes::NONE; MOST],
+        }
+    }
+}
+
+impl Moments {
+    /// Of a block: `columns[value][observation]`, all of one length. Observation k stands at position `first + k`.
+    pub fn of(columns: &[&[f64]], first: u64) -> Self {
+        let mut moments = Self { count: columns.first().map_or(0, |c| c.len() as u64), ..Self::default() };
+        if moments.count == 0 {
+            return moments;
+        }
+        for (i, column) in columns.iter().enumerate() {
+            moments.mean[i] = sum(column) / moments.count as f64;
+            moments.deviations[i] = sum_of_products(column, moments.mean[i], column, moments.mean[i]);
+            for (j, other) in columns[..i].iter().enumerate() {
+                moments.co_deviations[pair(j, i)] =
+                    sum_of_products(column, moments.mean[i], other, moments.mean[j]);
+            }
+            moments.extremes[i] = Extremes::of(column, first);
+        }
+        moments
+    }
+
+    /// Takes in others, whose observations come after these.
+    pub fn merge(&mut self, other: &Self) {
+        for (mine, theirs) in self.extremes.iter_mut().zip(&other.extremes) {
+            mine.merge(theirs);
+        }
+        if other.count == 0 || self.count == 0 {
+            if self.count == 0 {
+                let extremes = self.extremes;
+                *self = Self { extremes, ..other.clone() };
+            }
+            return;
+        }
+        let (n, m) = (self.count as f64, other.count as f64);
+        let share = m / (n + m);
+        let weight = n * share;
+        let mut delta = [0.0; MOST];
+        for i in 0..MOST {
+            delta[i] = other.mean[i] - self.mean[i];
+            self.mean[i] += delta[i] * share;
+            self.deviations[i] += other.deviations[i] + delta[i] * delta[i] * weight;
+            for j in 0..i {
+                self.co_deviations[pair(j, i)] +=
+                    other.co_deviations[pair(j, i)] + delta[i] * delta[j] * weight;
+            }
+        }
+        self.count += other.count;
+    }
+
+    /// Standard deviation of the population.
+    pub fn sd(&self, value: usize) -> f64 {
+        if self.count == 0 { 0.0 } else { (self.deviations[value] / self.count as f64).sqrt() }
+    }
+
+    /// Pearson's correlation of two values; `None` where one of them does not vary.
+    pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
+        let product = self.deviations[i].sqrt() * self.deviations[j].sqrt();
+        let r = self.co_deviations[pair(i.min(j), i.max(j))] / product;
+        r.is_finite().then(|| r.clamp(-1.0, 1.0))
+    }
+}
+
+/// A sum in a fixed order.
+fn sum(values: &[f64]) -> f64 {
+    let mut sums = [0.0; STRIDE];
+    let (blocks, rest) = values.as_chunks::<STRIDE>();
+    for block in blocks {
+        for lane in 0..STRIDE {
+            sums[lane] += block[lane];
+        }
+    }
+    fold(sums) + rest.iter().sum::<f64>()
+}
+
+/// Sum of products of deviations in a fixed order.
+fn sum_of_products(x: &[f64], mean_x: f64, y: &[f64], mean_y: f64) -> f64 {
+    let mut sums = [0.0; STRIDE];
+    let ((x_blocks, x_rest), (y_blocks, y_rest)) = (x.as_chunks::<STRIDE>(), y.as_chunks::<STRIDE>());
+    for (x, y) in x_blocks.iter().zip(y_blocks) {
+        for lane in 0..STRIDE {
+            sums[lane] += (x[lane] - mean_x) * (y[lane] - mean_y);
+        }
+    }
+    let rest = x_rest.iter().zip(y_rest).map(|(x, y)| (x - mean_x) * (y - mean_y));
+    fold(sums) + rest.sum::<f64>()
+}
+
+fn fold(s: [f64; STRIDE]) -> f64 {
+    ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
+}
+
+/// A sum of doubles in blocks, and how many there were.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tally {
+    /// The sum.
+    pub sum: f64,
+}
+
+impl Tally {
+    /// Adds a block of values.
+    pub fn add(&mut self, values: &[f64]) {
+        self.sum += sum(values);
+    }
+
+    /// Takes in another sum, whose values come after these.
+    pub fn merge(&mut self, other: &Self) {
+        self.sum += other.sum;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Plain two-pass statistics, the other way round.
+    fn plain(x: &[f64]) -> (f64, f64) {
+        let mean = x.iter().rev().sum::<f64>() / x.len() as f64;
+        let variance = x.iter().rev().map(|v| (v - mean) * (v - mean)).sum::<f64>() / x.len() as f64;
+        (mean, variance.sqrt())
+    }
+
+    fn noise(n: usize, seed: u64) -> Vec<f64> {
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..n).map(|_| next()).collect()
+    }
+
+    #[test]
+    fn blocks_of_any_length_merge_to_plain_statistics() {
+        let (x, y) = (noise(1000, 1), noise(1000, 2));
+        let z: Vec<f64> = x.iter().zip(&y).map(|(x, y)| x + 0.1 * y).collect();
+        for step in [1, 3, 8, 64, 999, 1000] {
+            let mut all = Moments::default();
+            for k in (0..1000).step_by(step) {
+                let end = (k + step).min(1000);
+                all.merge(&Moments::of(&[&x[k..end], &y[k..end], &z[k..end]], k as u64));
+            }
+            for (i, column) in [&x, &y, &z].into_iter().enumerate() {
+                let (mean, sd) = plain(column);
+                assert!((all.mean[i] - mean).abs() < 1e-14 && (all.sd(i) - sd).abs() < 1e-14);
+                let least = column.iter().copied().fold(f64::INFINITY, f64::min);
+                assert_eq!(column[all.extremes[i].min_at as usize], least);
+            }
+            let r = all.correlation(0, 2).expect("both vary");
+            assert!(r > 0.99 && r < 1.0, "{r}");
+            assert!(all.correlation(0, 1).expect("both vary").abs() < 0.1);
+        }
+    }
+
+    #[test]
+    fn of_equal_minima_the_first_stays() {
+        let mut all = Moments::of(&[&[3.0, 1.0, 1.0]], 10);
+        all.merge(&Moments::of(&[&[1.0, 2.0]], 13));
+        assert_eq!((all.extremes[0].min, all.extremes[0].min_at), (1.0, 11));
+        let mut late = Moments::of(&[&[1.0]], 20);
+        late.merge(&Moments::of(&[&[1.0]], 5));
+        assert_eq!(late.extremes[0].min_at, 5);
+    }
+
+    #[test]
+    fn what_does_not_vary_has_no_correlation() {
+        assert_eq!(Moments::of(&[&[1.0, 1.0], &[1.0, 2.0]], 0).correlation(0, 1), None);
+    }
+}
