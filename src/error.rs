@@ -35,6 +35,9 @@ pub enum Kind {
     /// The file could not be opened, read or mapped.
     #[error("{0}")]
     Unreadable(#[source] io::Error),
+    /// A file could not be made or written.
+    #[error("could not be written: {0}")]
+    Unwritable(#[source] io::Error),
     /// Something other than a regular file stands under the name.
     #[error("expected a regular file, found {0}")]
     NotAFile(&'static str),

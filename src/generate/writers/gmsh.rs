@@ -1,0 +1,152 @@
+//! Gmsh MSH 4.1, binary or as text. All nodes and elements belong to one volume (or surface), number 1.
+
+use std::io::{self, Write};
+
+use super::{Encoding, Writer};
+use crate::generate::{MeshSource, Problem};
+use crate::mesh::Shape;
+
+pub(super) const WRITER: Writer = Writer {
+    name: "gmsh",
+    title: "Gmsh MSH 4.1, binary (or text)",
+    extensions: &["msh"],
+    encodings: &[Encoding::Binary, Encoding::Text],
+    write,
+};
+
+/// The format's number for the linear element of a shape.
+fn element_type(shape: Shape) -> i32 {
+    match shape {
+        Shape::Triangle => 2,
+        Shape::Quadrilateral => 3,
+        Shape::Tetrahedron => 4,
+        Shape::Hexahedron => 5,
+        Shape::Wedge => 6,
+        Shape::Pyramid => 7,
+    }
+}
+
+fn write(problem: &Problem, encoding: Encoding, out: &mut dyn Write) -> io::Result<()> {
+    let mut out = Records { binary: encoding == Encoding::Binary, out, at_start: true };
+    let file_type = u8::from(out.binary);
+    writeln!(out.out, "$MeshFormat\n4.1 {file_type} 8")?;
+    if out.binary {
+        // By this number a reader knows the order of bytes.
+        out.out.write_all(&1_i32.to_le_bytes())?;
+        writeln!(out.out)?;
+    }
+    writeln!(out.out, "$EndMeshFormat")?;
+    nodes(problem.mesh(), &mut out)?;
+    elements(problem.mesh(), &mut out)
+}
+
+/// The dimension of a mesh: that of its shapes.
+fn dimension(mesh: &dyn MeshSource) -> i32 {
+    let largest = mesh.blocks().iter().map(|block| block.shape.dimension()).max();
+    if largest == Some(2) { 2 } else { 3 }
+}
+
+fn nodes(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
+    let count = mesh.nodes();
+    out.section("$Nodes")?;
+    out.sizes(&[1, count, 1, count])?;
+    out.end()?;
+    out.ints(&[dimension(mesh), 1, 0])?;
+    out.sizes(&[count])?;
+    out.end()?;
+    for tag in 1..=count {
+        out.sizes(&[tag])?;
+        out.end()?;
+    }
+    mesh.each_node(&mut |point| {
+        out.reals(&point)?;
+        out.end()
+    })?;
+    out.close("$EndNodes")
+}
+
+fn elements(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
+    let (blocks, count) = (mesh.blocks(), mesh.elements());
+    out.section("$Elements")?;
+    out.sizes(&[blocks.len() as u64, count, 1, count])?;
+    out.end()?;
+    let mut tag = 0;
+    for block in blocks {
+        out.ints(&[block.shape.dimension() as i32, 1, element_type(block.shape)])?;
+        out.sizes(&[block.elements])?;
+        out.end()?;
+        let mut record = [0; 1 + Shape::MAX_CORNERS];
+        mesh.each_element(block.shape, &mut |corners| {
+            tag += 1;
+            record[0] = tag;
+            record[1..].iter_mut().zip(corners).for_each(|(entry, corner)| *entry = corner + 1);
+            out.sizes(&record[..=corners.len()])?;
+            out.end()
+        })?;
+    }
+    out.close("$EndElements")
+}
+
+/// Writes the numbers of records one after another, or as text with a record a line.
+struct Records<'a> {
+    binary: bool,
+    out: &'a mut dyn Write,
+    at_start: bool,
+}
+
+impl Records<'_> {
+    fn section(&mut self, name: &str) -> io::Result<()> {
+        self.at_start = true;
+        writeln!(self.out, "{name}")
+    }
+
+    fn close(&mut self, name: &str) -> io::Result<()> {
+        if self.binary { writeln!(self.out, "\n{name}") } else { writeln!(self.out, "{name}") }
+    }
+
+    /// Ends a record.
+    fn end(&mut self) -> io::Result<()> {
+        self.at_start = true;
+        if self.binary { Ok(()) } else { writeln!(self.out) }
+    }
+
+    fn blank(&mut self) -> io::Result<()> {
+        if std::mem::take(&mut self.at_start) { Ok(()) } else { self.out.write_all(b" ") }
+    }
+
+    fn sizes(&mut self, values: &[u64]) -> io::Result<()> {
+        for value in values {
+            if self.binary {
+                self.out.write_all(&value.to_le_bytes())?;
+            } else {
+                self.blank()?;
+                write!(self.out, "{value}")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn ints(&mut self, values: &[i32]) -> io::Result<()> {
+        for value in values {
+            if self.binary {
+                self.out.write_all(&value.to_le_bytes())?;
+            } else {
+                self.blank()?;
+                write!(self.out, "{value}")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn reals(&mut self, values: &[f64]) -> io::Result<()> {
+        for value in values {
+            if self.binary {
+                self.out.write_all(&value.to_le_bytes())?;
+            } else {
+                self.blank()?;
+                write!(self.out, "{value:?}")?;
+            }
+        }
+        Ok(())
+    }
+}
