@@ -1,5 +1,7 @@
 //! The model problems are the report's meshes: every published digit comes out. And what is written is what was walked.
 
+#![allow(clippy::unwrap_used)]
+
 use std::collections::HashMap;
 use std::fs;
 use std::io::Write;
@@ -90,8 +92,9 @@ fn score(problem: &Problem, shape: Shape, aspect: fn(&[Point; 4]) -> f64) -> Vec
     let quadrilaterals =
         if shape == Shape::Hexahedron { &HEXAHEDRON_FACES } else { shape.facts().quadrilaterals };
 
-    let mut columns: Vec<_> =
-        ["M11", "M12", "M13", "M14", "M15", "M21", "M22", "M23"].map(|m| (m.into(), Column::default())).into();
+    let mut columns: Vec<_> = ["M11", "M12", "M13", "M14", "M15", "M21", "M22", "M23"]
+        .map(|m| (m.into(), Column::default()))
+        .into();
     for (number, corners) in (first..).zip(elements(mesh, shape)) {
         let point = |corner: usize| points[corners[corner] as usize];
         for face in shape.facts().triangles {
@@ -117,11 +120,15 @@ fn assert_published(table: &str, mesh: &str, columns: &[(String, Column)]) -> us
         let [_, _, measure, max, min, min_element, mean, sd] = row[..] else { panic!("{row:?}") };
         let (_, column) = columns.iter().find(|(name, _)| name == measure).unwrap();
         assert_eq!(column.printed(), [max, min, mean, sd], "{mesh}, table {table}, {measure}");
+        count += 1;
+        // Where all are perfect there is no worst one: for FD1's wedges the report then names a hexahedron.
+        if min == "1.000" {
+            continue;
+        }
         // Both meshes are symmetric, so that many elements share the minimum and rounding chose the one in print. It
         // has to be one of them.
         let published = column.least[&min_element.parse::<u64>().unwrap()];
         assert!(published - column.min < 1e-12, "{measure} of {min_element}: {published}, {}", column.min);
-        count += 1;
     }
     count
 }
@@ -227,10 +234,7 @@ fn settings_out_of_place_are_named_with_what_is_allowed() {
         assert!(error.is_usage());
         error.to_string()
     };
-    assert_eq!(
-        error("cube", &[]),
-        "no model problem is named \"cube\"; there are fd-cylinder, mapped-disc"
-    );
+    assert_eq!(error("cube", &[]), "no model problem is named \"cube\"; there are fd-cylinder, mapped-disc");
     assert_eq!(
         error("mapped-disc", &["rings=3"]),
         "mapped-disc has no parameter \"rings\"; it has radius, divisions"
@@ -245,7 +249,7 @@ fn settings_out_of_place_are_named_with_what_is_allowed() {
     );
     for text in ["radius=0", "radius=-1", "radius=nan", "radius=inf", "radius=wide", "radius="] {
         let message = error("fd-cylinder", &[text]);
-        assert!(message.contains("radius must be a number from 1e-12 to 1000000000000.0, found"), "{message}");
+        assert!(message.contains("radius must be a number from 1e-12 to 1e12, found"), "{message}");
     }
     assert_eq!(
         error("mapped-disc", &["radius"]),
@@ -367,7 +371,8 @@ fn a_file_is_placed_whole_and_compressed_by_its_extension() {
     assert_eq!(unpacked, expected);
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 3, "a temporary file is left");
     let mode = fs::metadata(folder.path().join("a.msh")).unwrap().permissions().mode();
-    let plain = fs::File::create(folder.path().join("plain")).unwrap().metadata().unwrap().permissions().mode();
+    let plain =
+        fs::File::create(folder.path().join("plain")).unwrap().metadata().unwrap().permissions().mode();
     assert_eq!(mode, plain);
 }
 
@@ -387,9 +392,8 @@ fn a_link_is_followed_and_not_replaced() {
 fn what_cannot_be_written_is_said_and_nothing_is_touched() {
     let folder = tempfile::tempdir().unwrap();
     let case = problem("mapped-disc", &[]);
-    let error = |name: &str, encoding| {
-        generate::write_file(&case, encoding, &folder.path().join(name)).unwrap_err()
-    };
+    let error =
+        |name: &str, encoding| generate::write_file(&case, encoding, &folder.path().join(name)).unwrap_err();
     let unknown = error("mesh.stl", Encoding::Default);
     assert!(unknown.is_usage());
     let message = unknown.to_string();
@@ -402,4 +406,13 @@ fn what_cannot_be_written_is_said_and_nothing_is_touched() {
     let nowhere = error("no/such/folder/mesh.inp", Encoding::Default);
     assert!(nowhere.to_string().contains("mesh.inp: could not be written"), "{nowhere}");
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
+fn a_full_disk_is_the_machines_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.vtu");
+    std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+    let error = generate::write_file(&problem("mapped-disc", &[]), Encoding::Default, &path).unwrap_err();
+    assert!(error.is_resource(), "{error}");
 }

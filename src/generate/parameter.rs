@@ -46,7 +46,7 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Range::Real(first, last) => write!(f, "a number from {first:?} to {last:?}"),
+            Range::Real(first, last) => write!(f, "a number from {first:e} to {last:e}"),
             Range::Whole(first, last) => write!(f, "a whole number from {first} to {last}"),
         }
     }

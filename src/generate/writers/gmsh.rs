@@ -1,5 +1,6 @@
 //! Gmsh MSH 4.1, binary or as text. All nodes and elements belong to one volume (or surface), number 1.
 
+use std::fmt;
 use std::io::{self, Write};
 
 use super::{Encoding, Writer};
@@ -48,7 +49,7 @@ fn dimension(mesh: &dyn MeshSource) -> i32 {
 
 fn nodes(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
     let count = mesh.nodes();
-    out.section("$Nodes")?;
+    out.open("$Nodes")?;
     out.sizes(&[1, count, 1, count])?;
     out.end()?;
     out.ints(&[dimension(mesh), 1, 0])?;
@@ -67,7 +68,7 @@ fn nodes(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
 
 fn elements(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
     let (blocks, count) = (mesh.blocks(), mesh.elements());
-    out.section("$Elements")?;
+    out.open("$Elements")?;
     out.sizes(&[blocks.len() as u64, count, 1, count])?;
     out.end()?;
     let mut tag = 0;
@@ -91,12 +92,12 @@ fn elements(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
 struct Records<'a> {
     binary: bool,
     out: &'a mut dyn Write,
+    /// Whether the next number is the first of its record.
     at_start: bool,
 }
 
 impl Records<'_> {
-    fn section(&mut self, name: &str) -> io::Result<()> {
-        self.at_start = true;
+    fn open(&mut self, name: &str) -> io::Result<()> {
         writeln!(self.out, "{name}")
     }
 
@@ -110,43 +111,24 @@ impl Records<'_> {
         if self.binary { Ok(()) } else { writeln!(self.out) }
     }
 
-    fn blank(&mut self) -> io::Result<()> {
-        if std::mem::take(&mut self.at_start) { Ok(()) } else { self.out.write_all(b" ") }
-    }
-
     fn sizes(&mut self, values: &[u64]) -> io::Result<()> {
-        for value in values {
-            if self.binary {
-                self.out.write_all(&value.to_le_bytes())?;
-            } else {
-                self.blank()?;
-                write!(self.out, "{value}")?;
-            }
-        }
-        Ok(())
+        values.iter().try_for_each(|value| self.number(value.to_le_bytes(), value))
     }
 
     fn ints(&mut self, values: &[i32]) -> io::Result<()> {
-        for value in values {
-            if self.binary {
-                self.out.write_all(&value.to_le_bytes())?;
-            } else {
-                self.blank()?;
-                write!(self.out, "{value}")?;
-            }
-        }
-        Ok(())
+        values.iter().try_for_each(|value| self.number(value.to_le_bytes(), value))
     }
 
     fn reals(&mut self, values: &[f64]) -> io::Result<()> {
-        for value in values {
-            if self.binary {
-                self.out.write_all(&value.to_le_bytes())?;
-            } else {
-                self.blank()?;
-                write!(self.out, "{value:?}")?;
-            }
+        // Debug is the shortest text that reads back to the same double.
+        values.iter().try_for_each(|value| self.number(value.to_le_bytes(), value))
+    }
+
+    fn number<const N: usize>(&mut self, bytes: [u8; N], text: impl fmt::Debug) -> io::Result<()> {
+        if self.binary {
+            return self.out.write_all(&bytes);
         }
-        Ok(())
+        let blank = if std::mem::take(&mut self.at_start) { "" } else { " " };
+        write!(self.out, "{blank}{text:?}")
     }
 }

@@ -32,7 +32,8 @@ pub(super) fn split_compression(path: &Path) -> (&Path, Compression) {
 /// Writes the problem's mesh to the file at `path`, in the format and the compression of its extensions.
 ///
 /// The bytes go to a temporary file beside it that takes its name when it is complete: nobody sees half a mesh. Where
-/// something other than a file stands under the name (a pipe, a terminal) they go straight to it.
+/// something other than a file stands under the name (a pipe, a terminal) they go straight to it. A standard output that
+/// has no name is written by [`Writer::write`](super::Writer::write).
 pub fn write_file(problem: &Problem, encoding: Encoding, path: &Path) -> Result<Counts> {
     let writer = writer_for(path)?;
     // A usage error must not cost the file that stands there.
