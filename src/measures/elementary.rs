@@ -1,0 +1,184 @@
+//! Elementary functions without branches, calls or fused multiply-adds: the same bits on every machine.
+//!
+//! The standard library's go to the host's mathematical library, which stops a loop from becoming vector code
+//! and differs between systems.
+
+use super::vector::choose;
+
+/// A bound, relative to the product of the lengths that go in, on the rounding error of a cross or triple product
+/// of edge vectors: what lies within it has no sign. (Shewchuk's bound for the determinant of three edges is 7
+/// units of 2⁻⁵³ times its permanent, and that is under 1.2 times the product of the lengths.)
+pub(super) const ROUNDING: f64 = 10.0 / (1u64 << 53) as f64;
+
+/// [`ROUNDING`] for squared quantities.
+pub(super) const ROUNDING2: f64 = ROUNDING * ROUNDING;
+
+/// The power of two that brings a length `x` to between 1 and 2, and its inverse.
+///
+/// Multiplying by a power of two is exact, so an element measured in such units keeps every digit, and fourth and
+/// higher powers of its lengths neither overflow nor vanish.
+#[inline(always)]
+pub(super) fn unit(x: f64) -> (f64, f64) {
+    const ONE: i64 = 1 << 52;
+    let exponent = x.to_bits() as i64 & (0x7ff * ONE);
+    let exponent = if exponent > ONE { exponent } else { ONE };
+    let exponent = if exponent < 2045 * ONE { exponent } else { 2045 * ONE };
+    (f64::from_bits((2046 * ONE - exponent) as u64), f64::from_bits(exponent as u64))
+}
+
+/// x^(-1/3) for x > 0, within 2 units in the last place; at 0 something large and finite.
+///
+/// The exponent is divided by -3 in integers, which is right to 4 %, and two fourth-order steps do the rest.
+#[inline(always)]
+pub(super) fn inverse_cube_root(x: f64) -> f64 {
+    // A third of the upper half of the bits, by a multiplication that all vector units have.
+    let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
+    let mut t = f64::from_bits(0x553e_f0ff_u64.wrapping_sub(third) << 32);
+    t = closer_inverse_cube_root(x, t);
+    closer_inverse_cube_root(x, t)
+}
+
+/// With e = 1 - x t³, x^(-1/3) = t (1-e)^(-1/3) = t (1 + e/3 + 2e²/9 + 14e³/81 + ...).
+#[inline(always)]
+fn closer_inverse_cube_root(x: f64, t: f64) -> f64 {
+    let e = 1.0 - x * t * t * t;
+    t + t * (e * (1.0 / 3.0 + e * (2.0 / 9.0 + e * (14.0 / 81.0))))
+}
+
+/// The angle between two vectors, in [0, π], from the magnitude of their cross product, their dot product and the
+/// product of their lengths; 0 where all three are 0.
+///
+/// An arc cosine loses half the digits of angles near 0 and π; the half angle's tangent loses none.
+#[inline(always)]
+pub(super) fn angle(sine: f64, cosine: f64, lengths: f64) -> f64 {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    const TAN_22_5: f64 = 0.414_213_562_373_095_05;
+    // The acute angle's half has the tangent sine / along, in [0, 1]; past 22.5° take 45° less it.
+    let along = lengths + cosine.abs();
+    let low = sine <= TAN_22_5 * along;
+    let above = choose(low, sine, along - sine);
+    let below = choose(low, along, along + sine);
+    let twice = 2.0 * small_arc_tangent(above / (below + f64::MIN_POSITIVE));
+    let acute = choose(low, twice, FRAC_PI_2 - twice);
+    choose(cosine < 0.0, PI - acute, acute)
+}
+
+/// atan(t) for |t| < 7/16, within one unit in the last place (the polynomial of FDLIBM's s_atan.c).
+#[inline(always)]
+fn small_arc_tangent(t: f64) -> f64 {
+    let z = t * t;
+    let w = z * z;
+    let odd = w * 1.628_582_011_536_578_2e-2 + 4.976_877_994_615_932e-2;
+    let odd = w * odd + 6.661_073_137_387_531e-2;
+    let odd = w * odd + 9.090_887_133_436_507e-2;
+    let odd = w * odd + 1.428_571_427_250_346_6e-1;
+    let odd = w * odd + 3.333_333_333_333_293e-1;
+    let even = w * -3.653_157_274_421_691_6e-2 - 5.833_570_133_790_573_5e-2;
+    let even = w * even - 7.691_876_205_044_83e-2;
+    let even = w * even - 1.111_111_040_546_235_6e-1;
+    let even = w * even - 1.999_999_999_987_648_3e-1;
+    t - t * (z * odd + w * even)
+}
+
+/// cos(⅔ acos u) for u in [0, 1], within 2e-16: with u = cos(θ/2) it is cos(θ/3).
+///
+/// The function is analytic there (its branch point is at -1), so one interpolating polynomial in 2u - 1 serves.
+#[inline(always)]
+pub(super) fn cosine_of_two_thirds(u: f64) -> f64 {
+    let x = 2.0 * u - 1.0;
+    let mut y = 4.990_811_057_596_218_3e-11;
+    y = y * x - 1.635_825_098_885_818_3e-10;
+    y = y * x + 3.146_175_703_917_731_3e-10;
+    y = y * x - 1.052_665_824_108_632_4e-9;
+    y = y * x + 3.972_853_735_371_566e-9;
+    y = y * x - 1.348_180_209_578_561e-8;
+    y = y * x + 4.583_483_187_568_922e-8;
+    y = y * x - 1.594_650_404_385_395_4e-7;
+    y = y * x + 5.641_598_426_946_4e-7;
+    y = y * x - 2.035_896_711_396_145_3e-6;
+    y = y * x + 7.541_076_906_895_577e-6;
+    y = y * x - 2.891_993_106_141_799_5e-5;
+    y = y * x + 0.000_116_425_453_105_203_61;
+    y = y * x - 0.000_504_124_691_647_182_3;
+    y = y * x + 0.002_466_352_815_080_786_5;
+    y = y * x - 0.015_509_188_436_466_925;
+    y = y * x + 0.247_409_066_322_853_1;
+    y * x + 0.766_044_443_118_977_9
+}
+
+/// A finished score: within [0, 1], and 0 where it is not a number, as that of a degenerate element.
+#[inline(always)]
+pub(super) fn score(x: f64) -> f64 {
+    let x = choose(x > 0.0, x, 0.0);
+    choose(x < 1.0, x, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance in units in the last place of the second number.
+    fn ulps(a: f64, b: f64) -> f64 {
+        (a - b).abs() / (f64::from_bits(b.abs().to_bits() + 1) - b.abs())
+    }
+
+    #[test]
+    fn inverse_cube_root_is_that_of_the_standard_library() {
+        let mut worst: f64 = 0.0;
+        for i in 0..200_000 {
+            let x = (f64::from(i) * 0.003_456_7 - 345.0).exp2() * (1.0 + f64::from(i % 97) / 97.0);
+            worst = worst.max(ulps(inverse_cube_root(x), 1.0 / x.cbrt()));
+        }
+        assert!(worst <= 5.0, "{worst} units in the last place");
+        for k in 1..1000 {
+            let k = f64::from(k);
+            assert!(ulps(inverse_cube_root(k * k * k), 1.0 / k) <= 2.0, "{k}");
+        }
+        assert!(inverse_cube_root(0.0).is_finite());
+    }
+
+    #[test]
+    fn angle_is_the_standard_arc_tangent() {
+        let mut worst: f64 = 0.0;
+        for i in 0..200_000 {
+            let size = (f64::from(i % 40) - 20.0).exp2();
+            let turn = f64::from(i) * std::f64::consts::PI / 200_000.0;
+            let (sine, cosine) = (size * turn.sin(), size * turn.cos());
+            // The product of lengths as the kernels have it: rounded.
+            let lengths = (sine * sine + cosine * cosine).sqrt();
+            worst = worst.max(ulps(angle(sine, cosine, lengths), sine.atan2(cosine)));
+        }
+        assert!(worst <= 3.0, "{worst} units in the last place");
+        for tiny in [1e-8, 1e-16, 1e-100] {
+            assert!(ulps(angle(tiny, 1.0, 1.0), tiny) <= 2.0);
+        }
+        assert_eq!(angle(0.0, 0.0, 0.0), 0.0);
+        assert_eq!(angle(0.0, -1.0, 1.0), std::f64::consts::PI);
+    }
+
+    #[test]
+    fn two_thirds_of_an_angle() {
+        for i in 0..=100_000 {
+            let u = f64::from(i) / 100_000.0;
+            let expected = (2.0 / 3.0 * u.acos()).cos();
+            assert!((cosine_of_two_thirds(u) - expected).abs() <= 5e-16, "{u}");
+        }
+    }
+
+    #[test]
+    fn a_unit_is_a_power_of_two_with_an_exact_inverse() {
+        for x in [0.0, 5e-324, 1e-310, 1e-150, 0.3, 1.0, 1.999, 7.0, 1e150, 1e308, f64::INFINITY] {
+            let (scale, inverse) = unit(x);
+            assert_eq!(scale * inverse, 1.0, "{x}");
+            assert!(x == 0.0 || x < 1e-307 || x > 8e307 || (1.0..2.0).contains(&(x * scale)), "{x}");
+        }
+    }
+
+    #[test]
+    fn scores_stay_in_range_and_are_never_nan() {
+        assert_eq!(score(f64::NAN), 0.0);
+        assert_eq!(score(-1.0), 0.0);
+        assert_eq!(score(f64::INFINITY), 1.0);
+        assert_eq!(score(0.25), 0.25);
+    }
+}
