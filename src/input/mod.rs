@@ -1,17 +1,27 @@
 //! Bytes: mapped files, what is unpacked to scratch first, and the siblings that a file includes.
 
+mod compression;
+mod content;
 mod mapped;
+mod name;
+mod packed;
+mod regular;
 mod scratch;
 mod source;
+mod unpack;
 
-use std::fs::File;
+use std::io::Read;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
+use packed::Packed;
 
+pub use compression::Compression;
+pub use content::looks_like;
 pub use mapped::Window;
-pub use scratch::{Scratch, ScratchFile};
+pub use name::mesh_name;
+pub use scratch::{Scratch, ScratchFile, ScratchShare};
 pub use source::{Source, Spot};
 
 /// Limits that guard the machine against hostile or broken files. Each has its own error.
@@ -56,24 +66,93 @@ pub struct Input {
     pub scratch: Scratch,
     /// The limits in force.
     pub limits: Limits,
-    /// What the bytes were packed with: `gzip`, `zstd`, `bzip2`, `xz`.
+    /// What the bytes were packed with: `gzip`, `zstd`, `bzip2`, `xz`, `lz4`.
     pub compression: Option<&'static str>,
-    /// Number of bytes of the file as it stands on disk.
+    /// Number of bytes of the file as it stands on disk, or as it came in.
     pub bytes_on_disk: u64,
+    xxh3: Arc<OnceLock<u64>>,
 }
 
 impl Input {
-    /// Opens and maps the mesh file at `path`.
+    /// Opens the mesh file at `path`. A compressed one (its first bytes tell) is unpacked to scratch, then mapped like
+    /// any other. One layer of compression is undone; what is packed twice is refused.
     pub fn open(path: &Path, limits: &Limits, scratch: &Scratch) -> Result<Self> {
-        let file = File::open(path).map_err(|e| Error::unreadable(path, e))?;
+        let file = regular::open(path)?;
+        let mut packed = Packed::new(path, &file, limits.file_bytes);
+        if Compression::detect(packed.head(Compression::HEAD_BYTES)?).is_some() {
+            return Self::unpack(packed, limits, scratch);
+        }
         let source = Source::new(path, &file)?;
+        if source.len() > limits.file_bytes {
+            return Err(Error::limit("the size of the file", bytes(limits.file_bytes)).in_file(path));
+        }
         let bytes_on_disk = source.len();
+        Self::new(source, None, bytes_on_disk, OnceLock::new(), limits, scratch)
+    }
+
+    /// Reads a mesh that comes as a stream, into scratch; it may be compressed as a file may. `name` is what errors
+    /// call it; `-` stands for standard input.
+    pub fn from_reader(name: &Path, reader: impl Read, limits: &Limits, scratch: &Scratch) -> Result<Self> {
+        let name = if name == Path::new("-") { Path::new("standard input") } else { name };
+        Self::unpack(Packed::new(name, reader, limits.file_bytes), limits, scratch)
+    }
+
+    /// The XXH3 (64 bits) of the bytes as they stand on disk, or as they came in. Where it is not known yet the file
+    /// is read for it, once; another thread may do this while the mesh is being scored.
+    pub fn xxh3(&self) -> u64 {
+        *self.xxh3.get_or_init(|| self.source.xxh3())
+    }
+
+    /// [`Input::xxh3`] as 16 hexadecimal digits.
+    pub fn xxh3_hex(&self) -> String {
+        format!("{:016x}", self.xxh3())
+    }
+
+    fn unpack<R: Read>(mut packed: Packed<'_, R>, limits: &Limits, scratch: &Scratch) -> Result<Self> {
+        let path = packed.path();
+        let compression = Compression::detect(packed.head(Compression::HEAD_BYTES)?);
+        let source = unpack::unpack(compression, &mut packed, limits, scratch)?.into_source(path)?;
+        let inner = Compression::detect(source.peek(0..Compression::HEAD_BYTES as u64));
+        if let (Some(outer), Some(inner)) = (compression, inner) {
+            let what = format!(
+                "{} within {}: only one layer of compression is unpacked",
+                inner.name(),
+                outer.name()
+            );
+            return Err(Error::unsupported(what).in_file(path));
+        }
+        let (bytes_on_disk, hash) = packed.seen();
+        let compression = compression.map(Compression::name);
+        Self::new(source, compression, bytes_on_disk, hash.into(), limits, scratch)
+    }
+
+    fn new(
+        source: Source,
+        compression: Option<&'static str>,
+        bytes_on_disk: u64,
+        xxh3: OnceLock<u64>,
+        limits: &Limits,
+        scratch: &Scratch,
+    ) -> Result<Self> {
+        if source.is_empty() {
+            return Err(Error::new(Kind::Empty).in_file(source.path()));
+        }
         Ok(Self {
             source: Arc::new(source),
             scratch: scratch.clone(),
             limits: limits.clone(),
-            compression: None,
+            compression,
             bytes_on_disk,
+            xxh3: Arc::new(xxh3),
         })
+    }
+}
+
+/// A number of bytes in the largest unit that shows it in whole.
+fn bytes(count: u64) -> String {
+    let units = [(40, "TiB"), (30, "GiB"), (20, "MiB"), (10, "KiB")];
+    match units.into_iter().find(|&(log, _)| count > 0 && count.trailing_zeros() >= log) {
+        Some((log, unit)) => format!("{} {unit}", count >> log),
+        None => format!("{count} bytes"),
     }
 }

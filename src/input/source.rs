@@ -4,6 +4,7 @@ use std::fs::File;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use super::ScratchShare;
 use super::mapped::{Mapped, Window};
 use crate::error::{At, Error, Result, excerpt};
 
@@ -24,13 +25,23 @@ pub enum Spot {
 pub struct Source {
     path: PathBuf,
     mapped: Mapped,
+    /// What of the scratch space the bytes take, where they stand there.
+    _share: Option<ScratchShare>,
 }
+
+/// How much is looked at, and given back, at a time where a whole file is gone through.
+const STEP: u64 = 8 << 20;
 
 impl Source {
     /// Maps `file`, which the user knows as `path`.
     pub fn new(path: &Path, file: &File) -> Result<Self> {
         let mapped = Mapped::new(file).map_err(|e| Error::unreadable(path, e))?;
-        Ok(Self { path: path.to_owned(), mapped })
+        Ok(Self { path: path.to_owned(), mapped, _share: None })
+    }
+
+    /// Maps a scratch file, whose `share` of the space is given back with the source.
+    pub(super) fn from_scratch(path: &Path, file: &File, share: ScratchShare) -> Result<Self> {
+        Ok(Self { _share: Some(share), ..Self::new(path, file)? })
     }
 
     /// The name that the user knows the file by.
@@ -65,16 +76,27 @@ impl Source {
 
     /// The number, from 1, of the line that byte `at` stands on. Counts from the start of the file: for errors only.
     pub fn line_of(&self, at: u64) -> u64 {
-        const STEP: u64 = 8 << 20;
-        let end = at.min(self.len());
         let mut lines = 1;
+        self.go_through(at, |bytes| lines += memchr::memchr_iter(b'\n', bytes).count() as u64);
+        lines
+    }
+
+    /// The XXH3 (64 bits) of all bytes.
+    pub(super) fn xxh3(&self) -> u64 {
+        let mut hash = xxhash_rust::xxh3::Xxh3Default::new();
+        self.go_through(self.len(), |bytes| hash.update(bytes));
+        hash.digest()
+    }
+
+    /// Shows all bytes before byte `end`, window by window.
+    fn go_through(&self, end: u64, mut see: impl FnMut(&[u8])) {
+        let end = end.min(self.len());
         let mut from = 0;
         while from < end {
-            let window = self.window(from..end.min(from + STEP));
-            lines += memchr::memchr_iter(b'\n', &window).count() as u64;
-            from += STEP;
+            let to = end.min(from + STEP);
+            see(&self.window(from..to));
+            from = to;
         }
-        lines
     }
 
     /// Adds this file and the place `spot` to an error that names none.

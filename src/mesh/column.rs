@@ -10,7 +10,7 @@ use bytemuck::Pod;
 use memmap2::MmapMut;
 
 use crate::error::{Error, Result};
-use crate::input::{Scratch, ScratchFile};
+use crate::input::{Scratch, ScratchFile, ScratchShare};
 
 /// A number of bytes that may be held in memory, shared by all who hold some.
 #[derive(Debug, Clone)]
@@ -58,7 +58,12 @@ pub struct Column<T> {
 #[derive(Debug)]
 enum Store<T> {
     Memory(Vec<T>),
-    Mapped { map: MmapMut, rows: PhantomData<T> },
+    /// The share of the scratch space goes back with the map.
+    Mapped {
+        map: MmapMut,
+        rows: PhantomData<T>,
+        _share: ScratchShare,
+    },
 }
 
 impl<T: Pod> ColumnBuilder<T> {
@@ -108,7 +113,7 @@ impl<T: Pod> ColumnBuilder<T> {
         let (budget, taken) = (self.budget.clone(), self.taken);
         match self.spilled.take() {
             None => Ok(Column { store: Store::Memory(self.rows), taken, budget }),
-            Some(file) => Ok(Column { store: map(&file.into_file()?)?, taken, budget }),
+            Some(file) => Ok(Column { store: map(file.into_file()?)?, taken, budget }),
         }
     }
 
@@ -138,9 +143,7 @@ impl<T: Pod> Column<T> {
             let rows = bytemuck::allocation::zeroed_vec(len);
             return Ok(Self { store: Store::Memory(rows), taken: bytes, budget: budget.clone() });
         }
-        let file = scratch.file()?.into_file()?;
-        file.set_len(bytes).map_err(|e| Error::resource("scratch space", e))?;
-        Ok(Self { store: map(&file)?, taken: 0, budget: budget.clone() })
+        Ok(Self { store: map(scratch.zeroed(bytes)?)?, taken: 0, budget: budget.clone() })
     }
 
     /// The rows.
@@ -174,13 +177,13 @@ impl<T> Drop for Column<T> {
 
 /// Maps a scratch file for reading and writing.
 #[expect(unsafe_code, reason = "a map cannot be made safely: the file may change under it")]
-fn map<T: Pod>(file: &File) -> Result<Store<T>> {
+fn map<T: Pod>((file, share): (File, ScratchShare)) -> Result<Store<T>> {
     if file.metadata().map_err(|e| Error::resource("scratch space", e))?.len() == 0 {
         return Ok(Store::Memory(Vec::new()));
     }
     // SAFETY: the file has no name any more and no other handle: nobody else can change it or cut it.
-    let map = unsafe { MmapMut::map_mut(file) }.map_err(|e| Error::resource("address space", e))?;
-    Ok(Store::Mapped { map, rows: PhantomData })
+    let map = unsafe { MmapMut::map_mut(&file) }.map_err(|e| Error::resource("address space", e))?;
+    Ok(Store::Mapped { map, rows: PhantomData, _share: share })
 }
 
 #[cfg(test)]
