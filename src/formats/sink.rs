@@ -46,6 +46,7 @@ impl Ledger {
     }
 
     /// The place of a type in `types`.
+    #[expect(clippy::ptr_arg, reason = "the name of a static type is not copied")]
     fn row(&mut self, name: &Cow<'static, str>, class: &Class) -> usize {
         self.types.iter().position(|t| t.name == *name && t.class == *class).unwrap_or_else(|| {
             self.types.push(TypeCount { name: name.clone(), class: class.clone(), count: 0 });

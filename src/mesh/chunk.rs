@@ -10,7 +10,7 @@ pub const CHUNK: usize = 4096;
 pub struct Chunk {
     shape: Shape,
     /// Number of the piece that the elements came from, and of this chunk within it.
-    pub(crate) origin: Origin,
+    origin: Origin,
     /// Row of each corner in the node table: `corners` rows an element.
     rows: Vec<u32>,
     /// The element's own number, one an element.
@@ -78,6 +78,11 @@ impl Chunk {
     /// The shape of all its elements.
     pub fn shape(&self) -> Shape {
         self.shape
+    }
+
+    /// Where it stands in the file.
+    pub fn origin(&self) -> Origin {
+        self.origin
     }
 
     /// The elements' own numbers.

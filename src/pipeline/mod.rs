@@ -1,21 +1,36 @@
-//! The pipeline: the only threads and channels.
+//! The pipeline: the only threads and channels. Bytes go in, a summary comes out.
+//!
+//! [`run`](run) reads from top to bottom. Pieces of nodes are decoded into the node table; pieces of elements into chunks,
+//! chunks into statistics, statistics into a summary. What is merged with what depends on positions in the file alone.
 
+mod assemble;
+mod elements;
+mod measure;
+mod merge;
+mod nodes;
 mod options;
+mod plan;
+mod run;
+#[cfg(test)]
+mod tests;
 
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::input::{Input, Scratch};
 use crate::summary::Summary;
 
 pub use options::{Options, Progress};
 
 /// Scores the mesh in the file at `path`.
-pub fn score(path: &Path, _options: &Options) -> Result<Summary> {
-    Err(Error::unsupported("not joined yet").in_file(path))
+pub fn score(path: &Path, options: &Options) -> Result<Summary> {
+    let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
+    run::run(&Input::open(path, &options.limits, &scratch)?, options)
 }
 
 /// Scores a mesh that comes from a stream, such as standard input; it is spooled to scratch first.
-pub fn score_reader(name: &str, _reader: impl Read, _options: &Options) -> Result<Summary> {
-    Err(Error::unsupported("not joined yet").in_file(Path::new(name)))
+pub fn score_reader(name: &str, reader: impl Read, options: &Options) -> Result<Summary> {
+    let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
+    run::run(&Input::from_reader(Path::new(name), reader, &options.limits, &scratch)?, options)
 }

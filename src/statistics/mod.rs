@@ -10,6 +10,6 @@ mod spread;
 mod tree;
 
 pub use histogram::{BINS, Histogram};
-pub use moments::{Extremes, Moments, Tally};
+pub use moments::{Extremes, MOST, Moments, sum};
 pub use spread::{QUANTILES, Spread};
 pub use tree::Tree;

@@ -15,15 +15,18 @@ const STRIDE: usize = 8;
 pub struct Extremes {
     /// Smallest value.
     pub min: f64,
-    /// Where the smallest value was met first.
+    /// Position in the file where the smallest value was met first: it decides between equal ones.
     pub min_at: u64,
+    /// What stands there, once somebody has looked it up.
+    pub min_label: u64,
     /// Largest value.
     pub max: f64,
 }
 
 impl Extremes {
     /// Of nothing.
-    pub const NONE: Extremes = Extremes { min: f64::INFINITY, min_at: u64::MAX, max: f64::NEG_INFINITY };
+    pub const NONE: Extremes =
+        Extremes { min: f64::INFINITY, min_at: u64::MAX, min_label: 0, max: f64::NEG_INFINITY };
 
     /// Of a block of values that stand at `first`, `first + 1` and so on.
     pub fn of(values: &[f64], first: u64) -> Self {
@@ -38,13 +41,13 @@ impl Extremes {
         let min = min.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
         let max = max.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
         let place = values.iter().position(|&v| v == min).unwrap_or(0);
-        Self { min, min_at: first + place as u64, max }
+        Self { min, min_at: first + place as u64, min_label: 0, max }
     }
 
     /// Takes in others. Of equal minima the one with the smaller position stays.
     pub fn merge(&mut self, other: &Self) {
         if other.min < self.min || (other.min == self.min && other.min_at < self.min_at) {
-            (self.min, self.min_at) = (other.min, other.min_at);
+            (self.min, self.min_at, self.min_label) = (other.min, other.min_at, other.min_label);
         }
         self.max = self.max.max(other.max);
     }
@@ -143,7 +146,7 @@ impl Moments {
 }
 
 /// A sum in a fixed order.
-fn sum(values: &[f64]) -> f64 {
+pub fn sum(values: &[f64]) -> f64 {
     let mut sums = [0.0; STRIDE];
     let (blocks, rest) = values.as_chunks::<STRIDE>();
     for block in blocks {
@@ -169,25 +172,6 @@ fn sum_of_products(x: &[f64], mean_x: f64, y: &[f64], mean_y: f64) -> f64 {
 
 fn fold(s: [f64; STRIDE]) -> f64 {
     ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
-}
-
-/// A sum of doubles in blocks, and how many there were.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Tally {
-    /// The sum.
-    pub sum: f64,
-}
-
-impl Tally {
-    /// Adds a block of values.
-    pub fn add(&mut self, values: &[f64]) {
-        self.sum += sum(values);
-    }
-
-    /// Takes in another sum, whose values come after these.
-    pub fn merge(&mut self, other: &Self) {
-        self.sum += other.sum;
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,274 @@
+//! What the stages found becomes a summary.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::time::{Instant, SystemTime};
+
+use super::Options;
+use super::measure::{Bins, ShapeBins, ShapeStatistics};
+use super::merge::Merged;
+use crate::error::Result;
+use crate::formats::{FORMATS, Format, Ledger};
+use crate::input::{Input, mesh_name};
+use crate::measures::{self, Family};
+use crate::mesh::{Class, Nodes, Shape};
+use crate::statistics::{Moments, Spread};
+use crate::summary::{
+    Bounds, Checks, Elements, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
+    ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict,
+};
+
+/// Everything that a run found.
+pub(super) struct Found<'a> {
+    pub input: &'a Input,
+    pub format: &'static dyn Format,
+    pub hash: u64,
+    pub nodes: &'a Nodes,
+    pub merged: Merged,
+    pub bins: Bins,
+    pub threads: usize,
+    pub started: (SystemTime, Instant),
+}
+
+/// Puts the summary together and judges it.
+pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
+    let shapes = shapes(&found, &options.measures);
+    let mut summary = Summary {
+        schema: Cow::Borrowed(SCHEMA),
+        mesh: mesh_file(&found),
+        nodes: node_summary(found.nodes),
+        elements: elements(&found.merged.ledger),
+        totals: totals(&shapes),
+        sizes: Sizes { edge_length: None, element_size: None },
+        checks: checks(&found),
+        shapes,
+        expected: None,
+        verdict: Verdict { status: Status::Pass, reasons: Vec::new() },
+        run: None,
+    };
+    summary.sizes = sizes(&found, summary.dimension());
+    options.judgement.judge(&mut summary);
+    name_first_elements(&found, &mut summary);
+    if options.run_info {
+        summary.run = Some(run(&found));
+    }
+    Ok(summary)
+}
+
+fn mesh_file(found: &Found<'_>) -> MeshFile {
+    let path = found.input.source.path();
+    let extensions: Vec<_> = FORMATS.iter().flat_map(|format| format.extensions()).copied().collect();
+    MeshFile {
+        name: mesh_name(path, &extensions).to_string_lossy().into_owned(),
+        path: path.to_string_lossy().into_owned(),
+        format: found.format.name().to_owned(),
+        compression: found.input.compression.map(str::to_owned),
+        bytes: found.input.bytes_on_disk,
+        xxh3: format!("{:016x}", found.hash),
+    }
+}
+
+fn node_summary(nodes: &Nodes) -> NodeSummary {
+    let bounds = nodes.bounds();
+    NodeSummary {
+        count: nodes.count(),
+        unused: nodes.unused(),
+        bounds: (nodes.count() > 0).then_some(Bounds { min: bounds.min, max: bounds.max }),
+    }
+}
+
+fn elements(ledger: &Ledger) -> Elements {
+    let mut elements = Elements::default();
+    for row in ledger.types.iter().filter(|row| row.count > 0) {
+        elements.count += row.count;
+        *elements.by_type.entry(row.name.to_string()).or_default() += row.count;
+        if let Class::Counted(what) = &row.class {
+            *elements.not_measured.entry(what.to_string()).or_default() += row.count;
+        }
+    }
+    elements
+}
+
+fn shapes(found: &Found<'_>, wanted: &[String]) -> BTreeMap<Shape, ShapeSummary> {
+    let mut shapes = BTreeMap::new();
+    for shape in Shape::ALL {
+        if let (Some(statistics), Some(bins)) = (&found.merged.shapes[shape.index()], found.bins.shape(shape))
+        {
+            let order = order(&found.merged.ledger, shape);
+            shapes.insert(shape, shape_summary(shape, statistics, bins, order, wanted));
+        }
+    }
+    shapes
+}
+
+fn shape_summary(
+    shape: Shape,
+    statistics: &ShapeStatistics,
+    bins: &ShapeBins,
+    order: BTreeMap<String, u64>,
+    wanted: &[String],
+) -> ShapeSummary {
+    let is_solid = shape.dimension() == 3;
+    let is_wanted = |code: &str| wanted.is_empty() || wanted.iter().any(|w| w == code);
+    let mut found = ShapeSummary {
+        count: statistics.count,
+        order,
+        area: (!is_solid).then_some(statistics.extent),
+        volume: is_solid.then_some(statistics.extent),
+        inverted: inverted(statistics).count,
+        degenerate: statistics.degenerate.count,
+        measures: BTreeMap::new(),
+        correlation: BTreeMap::new(),
+        ordering: BTreeMap::new(),
+    };
+    for (subject, what) in measures::subjects(shape).iter().enumerate() {
+        let moments = &statistics.subjects[subject];
+        let rows = what.family.measures();
+        for (i, row) in rows.iter().enumerate().filter(|(_, row)| is_wanted(row.code)) {
+            let summary = measure_summary(what.on, moments, i, &bins.measures[subject][i]);
+            found.measures.insert(row.code.to_owned(), summary);
+            for (j, other) in rows.iter().enumerate().skip(i + 1).filter(|(_, row)| is_wanted(row.code)) {
+                found.correlation.insert(format!("{} {}", row.code, other.code), moments.correlation(i, j));
+            }
+        }
+        if what.family == Family::Tetrahedron {
+            let share = statistics.ordered as f64 / statistics.count as f64;
+            found.ordering.insert("M32>=M34>=M31>=M33".to_owned(), share);
+        }
+    }
+    found
+}
+
+fn measure_summary(
+    on: &'static str,
+    moments: &Moments,
+    value: usize,
+    bins: &super::measure::MeasureBins,
+) -> MeasureSummary {
+    let extremes = &moments.extremes[value];
+    MeasureSummary {
+        on: Cow::Borrowed(on),
+        count: moments.count,
+        max: extremes.max,
+        min: extremes.min,
+        min_element: extremes.min_label,
+        mean: moments.mean[value],
+        sd: moments.sd(value),
+        quantiles: bins.spread.quantiles(extremes.min, extremes.max),
+        histogram: bins.histogram.counts().to_vec(),
+    }
+}
+
+/// Elements that are oriented against the majority of their shape. Writers disagree on which orientation is positive
+/// (VTK changed its own mind about wedges in 9.7), so the majority decides.
+fn inverted(statistics: &ShapeStatistics) -> super::measure::Found {
+    let (positive, negative) = (statistics.positive, statistics.negative);
+    if negative.count > positive.count { positive } else { negative }
+}
+
+fn order(ledger: &Ledger, shape: Shape) -> BTreeMap<String, u64> {
+    let mut orders = BTreeMap::new();
+    for row in ledger.types.iter().filter(|row| row.count > 0) {
+        if let Class::Measured { shape: its, order, .. } = &row.class
+            && *its == shape
+        {
+            *orders.entry(order.to_string()).or_default() += row.count;
+        }
+    }
+    orders
+}
+
+fn totals(shapes: &BTreeMap<Shape, ShapeSummary>) -> Totals {
+    let total = |extents: Vec<f64>| (!extents.is_empty()).then(|| extents.iter().sum());
+    let volume = total(shapes.values().filter_map(|shape| shape.volume).collect());
+    let area = total(shapes.values().filter_map(|shape| shape.area).collect());
+    Totals { area: if volume.is_some() { None } else { area }, volume }
+}
+
+fn sizes(found: &Found<'_>, dimension: usize) -> Sizes {
+    let mut edges: Option<[f64; 2]> = None;
+    let mut size = Moments::default();
+    let mut spread = Spread::up_to(found.nodes.bounds().diagonal());
+    for shape in Shape::ALL.into_iter().filter(|shape| shape.dimension() == dimension) {
+        if let (Some(statistics), Some(bins)) = (&found.merged.shapes[shape.index()], found.bins.shape(shape))
+        {
+            size.merge(&statistics.size);
+            spread.merge(&bins.size);
+            edges = match (edges, statistics.edges) {
+                (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+                (a, b) => a.or(b),
+            };
+        }
+    }
+    let extremes = &size.extremes[0];
+    Sizes {
+        edge_length: edges.map(|[min, max]| Range { min, max }),
+        element_size: (size.count > 0).then(|| SizeSummary {
+            min: extremes.min,
+            max: extremes.max,
+            mean: size.mean[0],
+            quantiles: spread.quantiles(extremes.min, extremes.max),
+        }),
+    }
+}
+
+fn checks(found: &Found<'_>) -> Checks {
+    let ledger = &found.merged.ledger;
+    let mut checks = Checks {
+        missing_nodes: ledger.missing_nodes,
+        repeated_nodes: ledger.repeated_nodes,
+        unused_nodes: found.nodes.unused(),
+        ..Checks::default()
+    };
+    for statistics in found.merged.shapes.iter().flatten() {
+        checks.inverted += inverted(statistics).count;
+        checks.degenerate += statistics.degenerate.count;
+        checks.concave_faces += statistics.concave;
+        checks.crossed_faces += statistics.crossed;
+        if statistics.negative.count > statistics.positive.count {
+            checks.reversed += statistics.negative.count;
+        }
+    }
+    checks
+}
+
+/// Says which element to look at first where the verdict only counted.
+fn name_first_elements(found: &Found<'_>, summary: &mut Summary) {
+    for reason in &mut summary.verdict.reasons {
+        if let (None, Some(shape)) = (reason.element, reason.shape)
+            && let Some(statistics) = &found.merged.shapes[shape.index()]
+        {
+            reason.element = match &*reason.rule {
+                "inverted elements" => inverted(statistics).first,
+                "degenerate elements" => statistics.degenerate.first,
+                _ => None,
+            };
+        }
+    }
+}
+
+fn run(found: &Found<'_>) -> Run {
+    let seconds = found.started.1.elapsed().as_secs_f64();
+    let measured: u64 = found.merged.shapes.iter().flatten().map(|s| s.count).sum();
+    Run {
+        meshgauge: Cow::Borrowed(env!("CARGO_PKG_VERSION")),
+        host: rustix::system::uname().nodename().to_string_lossy().into_owned(),
+        started: humantime::format_rfc3339_millis(found.started.0).to_string(),
+        seconds,
+        threads: found.threads,
+        peak_rss_bytes: peak_resident_bytes(),
+        elements_per_second: measured as f64 / seconds,
+    }
+}
+
+/// Peak resident memory of this process, 0 where the system does not tell.
+fn peak_resident_bytes() -> u64 {
+    use std::io::{BufRead, BufReader};
+    let Ok(file) = std::fs::File::open("/proc/self/status") else { return 0 };
+    let line = BufReader::new(file)
+        .lines()
+        .map_while(std::result::Result::ok)
+        .find(|line| line.starts_with("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().nth(1)?.parse::<u64>().ok());
+    kilobytes.unwrap_or(0) * 1024
+}

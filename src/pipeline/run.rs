@@ -1,0 +1,97 @@
+//! One run, from top to bottom: find the format, outline the file, read the nodes, measure the elements, sum up.
+
+use std::thread;
+use std::time::{Instant, SystemTime};
+
+use super::assemble::{Found, assemble};
+use super::elements::{chunks_in_flight, measure_elements};
+use super::nodes::read_nodes;
+use super::plan::Plan;
+use super::{Options, Progress};
+use crate::error::{Error, Kind, Result};
+use crate::formats::{self, FORMATS, Format, HEAD_BYTES};
+use crate::input::{Input, looks_like};
+use crate::mesh::{Budget, CHUNK, NodesBuilder, Shape};
+use crate::summary::Summary;
+
+/// Scores an open mesh.
+pub(super) fn run(input: &Input, options: &Options) -> Result<Summary> {
+    run_as(input, choose(input, options.format.as_deref())?, options)
+}
+
+/// Scores an open mesh as one of the given format.
+pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Options) -> Result<Summary> {
+    let started = (SystemTime::now(), Instant::now());
+    let named = |error: Error| error.in_format(format.name()).in_file(input.source.path());
+    let quiet = Progress::default();
+    let progress = options.progress.as_deref().unwrap_or(&quiet);
+    let threads = options.threads.max(1);
+
+    // The hash needs every byte in order: it runs ahead beside the rest, which finds the bytes in memory then.
+    let (hash, merged) = thread::scope(|scope| {
+        let hash = scope.spawn(|| input.xxh3());
+        let merged = measure(input, format, options, threads, progress);
+        (hash.join(), merged)
+    });
+    let (nodes, merged, bins) = merged.map_err(named)?;
+    let hash = match hash {
+        Ok(hash) => hash,
+        Err(panic) => std::panic::resume_unwind(panic),
+    };
+    let found = Found { input, format, hash, nodes: &nodes, merged, bins, threads, started };
+    assemble(found, options)
+}
+
+/// Nodes first, then elements.
+fn measure(
+    input: &Input,
+    format: &dyn Format,
+    options: &Options,
+    threads: usize,
+    progress: &Progress,
+) -> Result<(crate::mesh::Nodes, super::merge::Merged, super::measure::Bins)> {
+    let mut plan = Plan::default();
+    format.outline(input, &mut plan)?;
+    progress.expect((plan.nodes.len() + plan.elements.len()) as u64);
+    tracing::debug!(
+        format = format.name(),
+        node_pieces = plan.nodes.len(),
+        element_pieces = plan.elements.len(),
+        "outlined"
+    );
+    let budget = Budget::new(options.memory.saturating_sub(buffer_bytes(threads)));
+    let builder = NodesBuilder::new(&budget, &input.scratch);
+    let nodes = read_nodes(&plan.nodes, threads, builder, progress)?;
+    tracing::debug!(nodes = nodes.count(), spilled = nodes.is_spilled(), "nodes read");
+    let (mut merged, bins) =
+        measure_elements(&plan.elements, &nodes, threads, options.allow_missing_nodes, progress)?;
+    merged.ledger.merge(&plan.ledger);
+    Ok((nodes, merged, bins))
+}
+
+/// Memory of the chunks in flight.
+fn buffer_bytes(threads: usize) -> u64 {
+    (chunks_in_flight(threads) * CHUNK * (4 * Shape::MAX_CORNERS + 8)) as u64
+}
+
+/// The format that the caller named, or the first that knows the content.
+fn choose(input: &Input, name: Option<&str>) -> Result<&'static dyn Format> {
+    if let Some(name) = name {
+        return formats::find(name).ok_or_else(|| {
+            let known: Vec<_> = FORMATS.iter().map(|format| format.name()).collect();
+            Error::usage(format!("there is no format {name:?}; known are {}", known.join(", ")))
+        });
+    }
+    let head = input.source.peek(0..HEAD_BYTES as u64);
+    FORMATS.iter().copied().find(|format| format.detect(head)).ok_or_else(|| {
+        let mut text = match looks_like(head) {
+            Some(what) => format!("expected a mesh, found {what}; looked for:"),
+            None => "expected a mesh of a known format; looked for:".to_owned(),
+        };
+        for format in FORMATS {
+            text.push_str(&format!(" {} ({});", format.name(), format.looks_for()));
+        }
+        text.pop();
+        Error::new(Kind::UnknownFormat(text)).in_file(input.source.path())
+    })
+}

@@ -1,0 +1,151 @@
+//! The pipeline against a made-up format: same bytes for any number of threads and any budget, the first error in
+//! the file for any number of threads, and no hang.
+
+use std::io::Write;
+use std::ops::Range;
+use std::sync::{Arc, LazyLock};
+
+use super::Options;
+use super::run::run_as;
+use crate::error::{At, Error, Result};
+use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, Piece};
+use crate::input::{Input, Limits, Scratch, Source, Spot};
+use crate::mesh::{ElementType, Shape};
+use crate::summary::Summary;
+
+/// A box of hexahedra, `SIDE` along each axis, each followed by one tetrahedron of its corners.
+const SIDE: u64 = 24;
+const PER_PIECE: usize = 1000;
+
+struct Lattice {
+    /// Pieces of elements that fail.
+    bad: &'static [u64],
+    /// Whether element pieces come before node pieces.
+    elements_first: bool,
+}
+
+struct Layout {
+    source: Arc<Source>,
+    bad: &'static [u64],
+}
+
+impl Format for Lattice {
+    fn name(&self) -> &'static str {
+        "lattice"
+    }
+    fn title(&self) -> &'static str {
+        "made up"
+    }
+    fn extensions(&self) -> &'static [&'static str] {
+        &["lattice"]
+    }
+    fn looks_for(&self) -> &'static str {
+        "nothing"
+    }
+    fn detect(&self, _head: &[u8]) -> bool {
+        false
+    }
+    fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
+        let layout = Arc::new(Layout { source: Arc::clone(&input.source), bad: self.bad });
+        let pieces =
+            |count: u64| (0..count).step_by(PER_PIECE).map(move |k| k..(k + PER_PIECE as u64).min(count));
+        let nodes = |out: &mut dyn Outline| {
+            pieces((SIDE + 1).pow(3)).try_for_each(|span| out.nodes(Piece { layout: layout.clone(), span }))
+        };
+        let elements = |out: &mut dyn Outline| {
+            pieces(SIDE.pow(3)).try_for_each(|span| out.elements(Piece { layout: layout.clone(), span }))
+        };
+        if self.elements_first {
+            elements(out)?;
+            nodes(out)
+        } else {
+            nodes(out)?;
+            elements(out)
+        }
+    }
+}
+
+impl NodeLayout for Layout {
+    fn source(&self) -> &Source {
+        &self.source
+    }
+    fn decode(&self, span: Range<u64>, out: &mut NodeBatch) -> Result<()> {
+        for k in span {
+            let at = [k % (SIDE + 1), k / (SIDE + 1) % (SIDE + 1), k / (SIDE + 1).pow(2)].map(|i| i as f64);
+            // Bent a little, so that no two elements are alike.
+            let bend = |t: f64| t + 0.3 * (0.7 * at[0] + 1.3 * at[1] + 0.9 * at[2]).sin();
+            out.push(10 * k + 7, [bend(at[0]), at[1], bend(at[2])])?;
+        }
+        Ok(())
+    }
+}
+
+static HEXAHEDRON: LazyLock<Arc<ElementType>> =
+    LazyLock::new(|| Arc::new(ElementType::measured("brick", Shape::Hexahedron, 1, 8)));
+static TETRAHEDRON: LazyLock<Arc<ElementType>> =
+    LazyLock::new(|| Arc::new(ElementType::measured("tet", Shape::Tetrahedron, 1, 4)));
+
+impl ElementLayout for Layout {
+    fn source(&self) -> &Source {
+        &self.source
+    }
+    fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
+        if self.bad.contains(&(span.start / PER_PIECE as u64)) {
+            out.at = Spot::Binary(span.start);
+            return Err(Error::malformed("an element", "noise"));
+        }
+        for k in span {
+            let (i, j, l) = (k % SIDE, k / SIDE % SIDE, k / SIDE.pow(2));
+            let id = |i: u64, j: u64, l: u64| 10 * (i + (SIDE + 1) * (j + (SIDE + 1) * l)) + 7;
+            let ring = |l: u64| [id(i, j, l), id(i + 1, j, l), id(i + 1, j + 1, l), id(i, j + 1, l)];
+            let corners = [ring(l), ring(l + 1)].concat();
+            out.element(2 * k, &HEXAHEDRON, &corners)?;
+            out.element(2 * k + 1, &TETRAHEDRON, &[corners[0], corners[1], corners[3], corners[4]])?;
+        }
+        Ok(())
+    }
+}
+
+fn lattice(format: &'static Lattice, threads: usize, memory: u64) -> Result<Summary> {
+    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+    file.write_all(&[7; 100]).expect("room for it");
+    let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
+    let input = Input::open(file.path(), &Limits::default(), &scratch)?;
+    let options = Options { threads, memory, run_info: false, ..Options::default() };
+    run_as(&input, format, &options)
+}
+
+fn text(mut summary: Summary) -> String {
+    summary.mesh.name = String::new();
+    summary.mesh.path = String::new();
+    summary.to_json()
+}
+
+#[test]
+fn the_summary_does_not_depend_on_threads_or_memory() {
+    static FORMAT: Lattice = Lattice { bad: &[], elements_first: false };
+    static TURNED: Lattice = Lattice { bad: &[], elements_first: true };
+    let first = lattice(&FORMAT, 1, 256 << 20).expect("a sound mesh");
+    assert_eq!(first.nodes.count, (SIDE + 1).pow(3));
+    assert_eq!(first.nodes.unused, 0);
+    assert_eq!(first.shapes[&Shape::Hexahedron].count, SIDE.pow(3));
+    assert_eq!(first.shapes[&Shape::Hexahedron].measures["M22"].count, 6 * SIDE.pow(3));
+    assert_eq!(first.shapes[&Shape::Tetrahedron].measures["M33"].histogram.iter().sum::<u64>(), SIDE.pow(3));
+    let first = text(first);
+    for threads in [1, 2, 7] {
+        for memory in [0, 1 << 20, 1 << 30] {
+            assert_eq!(text(lattice(&FORMAT, threads, memory).expect("sound")), first, "{threads} {memory}");
+            assert_eq!(text(lattice(&TURNED, threads, memory).expect("sound")), first, "{threads} {memory}");
+        }
+    }
+}
+
+#[test]
+fn the_first_bad_piece_in_the_file_gives_the_error() {
+    static FORMAT: Lattice = Lattice { bad: &[3, 4, 9], elements_first: false };
+    for run in 0..60 {
+        let error = lattice(&FORMAT, 1 + run % 7, 1 << 20).expect_err("piece 3 is bad");
+        assert_eq!(error.place(), Some(At::Byte(3 * PER_PIECE as u64)), "{error}");
+        assert_eq!(error.format(), Some("lattice"));
+    }
+}
