@@ -1,9 +1,28 @@
 //! The verdict: the preset `npl`, what the user asked for on the command line, and the true area or volume.
+//!
+//! Boundary shapes (of a lower dimension than the mesh) have no say. Reasons stand in this order: failures before
+//! warnings; the expected area or volume first, then shape by shape, measure by measure.
 
 use std::borrow::Cow;
 
-use super::{Expected, Reason, Status, Summary, Verdict};
+use super::{Expected, MeasureSummary, Reason, Status, Summary, Verdict};
 use crate::mesh::Shape;
+
+/// Names of the rules, as they stand in a summary.
+pub mod rules {
+    /// Warns where the minimum of a measure is under 0.1.
+    pub const NPL: &str = "npl";
+    /// Fails where the minimum of a measure is under a limit of the user's.
+    pub const FAIL_UNDER: &str = "fail under";
+    /// Fails where elements are oriented against the rest.
+    pub const INVERTED: &str = "inverted elements";
+    /// Fails where elements have no area, no volume or an edge without length.
+    pub const DEGENERATE: &str = "degenerate elements";
+    /// Fails where the volume is not what the user expects.
+    pub const EXPECTED_VOLUME: &str = "expected volume";
+    /// Fails where the area is not what the user expects.
+    pub const EXPECTED_AREA: &str = "expected area";
+}
 
 /// The report: under this a measure is 'bad enough to warrant further investigation'.
 const INVESTIGATE: f64 = 0.1;
@@ -11,7 +30,7 @@ const INVESTIGATE: f64 = 0.1;
 /// What a mesh is judged by.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Judgement {
-    /// Limits of the user's own.
+    /// Limits of the user's own; each takes the place of the preset's limit for its measure.
     pub fail_under: Vec<FailUnder>,
     /// The true area or volume.
     pub expectation: Option<Expectation>,
@@ -40,56 +59,86 @@ pub struct Expectation {
 impl Judgement {
     /// Fills `expected` and `verdict` of a summary.
     pub fn judge(&self, summary: &mut Summary) {
+        summary.expected = self.expectation.map(|asked| asked.meet(summary));
         let mut reasons = Vec::new();
-        summary.expected = self.expectation.and_then(|e| expected(&e, summary));
         if let (Some(found), Some(asked)) = (&summary.expected, &self.expectation)
             && !found.within
         {
-            reasons.push(Reason {
-                rule: Cow::Borrowed(if asked.volume { "expected volume" } else { "expected area" }),
-                status: Status::Fail,
-                measure: None,
-                shape: None,
-                value: found.relative_error,
-                limit: asked.tolerance_percent / 100.0,
-                element: None,
-            });
+            reasons.push(asked.missed(found.relative_error));
         }
         for (shape, found) in summary.main_shapes() {
-            for (rule, count) in
-                [("inverted elements", found.inverted), ("degenerate elements", found.degenerate)]
-            {
+            for (rule, count) in [(rules::INVERTED, found.inverted), (rules::DEGENERATE, found.degenerate)] {
                 if count > 0 {
                     reasons.push(counted(rule, shape, count));
                 }
             }
             for (code, measure) in &found.measures {
-                let reason = |rule: &'static str, status, limit| Reason {
-                    rule: Cow::Borrowed(rule),
-                    status,
-                    measure: Some(code.clone()),
-                    shape: Some(shape),
-                    value: measure.min,
-                    limit,
-                    element: Some(measure.min_element),
-                };
-                let asked = self.fail_under.iter().filter(|f| f.measure == *code && measure.min < f.value);
-                reasons.extend(asked.map(|f| reason("fail under", Status::Fail, f.value)));
-                if measure.min < INVESTIGATE {
-                    reasons.push(reason("npl", Status::Warn, INVESTIGATE));
-                }
+                reasons.extend(self.limits(code, measure, shape));
             }
         }
-        reasons.sort_by_key(|reason| std::cmp::Reverse(reason.status));
-        let status = reasons.first().map_or(Status::Pass, |reason| reason.status);
+        reasons.sort_by_key(|reason| std::cmp::Reverse(reason.status()));
+        let status = reasons.first().map_or(Status::Pass, Reason::status);
         summary.verdict = Verdict { status, reasons };
     }
+
+    /// The limits that a measure is under: the user's own where there are any, else the preset's.
+    fn limits(&self, code: &str, measure: &MeasureSummary, shape: Shape) -> Vec<Reason> {
+        let mut limits: Vec<_> = self
+            .fail_under
+            .iter()
+            .filter(|limit| limit.measure == code)
+            .map(|limit| (rules::FAIL_UNDER, limit.value))
+            .collect();
+        if limits.is_empty() {
+            limits.push((rules::NPL, INVESTIGATE));
+        }
+        limits.retain(|(_, limit)| measure.min < *limit);
+        let reason = |(rule, limit)| Reason {
+            rule: Cow::Borrowed(rule),
+            measure: Some(code.to_owned()),
+            shape: Some(shape),
+            value: measure.min,
+            limit,
+            element: Some(measure.min_element),
+        };
+        limits.into_iter().map(reason).collect()
+    }
+}
+
+impl Expectation {
+    /// Compares the mesh with what is expected of it. A mesh without solids has the volume 0, one with solids the
+    /// area 0: the user expects another kind of mesh, and that must not pass.
+    fn meet(&self, summary: &Summary) -> Expected {
+        let found = if self.volume { summary.totals.volume } else { summary.totals.area }.unwrap_or(0.0);
+        let relative_error = relative_error(found, self.value);
+        Expected {
+            volume: self.volume.then_some(self.value),
+            area: (!self.volume).then_some(self.value),
+            relative_error,
+            within: relative_error.abs() <= self.tolerance_percent / 100.0,
+        }
+    }
+
+    fn missed(&self, relative_error: f64) -> Reason {
+        Reason {
+            rule: Cow::Borrowed(if self.volume { rules::EXPECTED_VOLUME } else { rules::EXPECTED_AREA }),
+            measure: None,
+            shape: None,
+            value: relative_error,
+            limit: self.tolerance_percent / 100.0,
+            element: None,
+        }
+    }
+}
+
+/// (found - truth) / truth, always finite: JSON has no infinity, and a true value of 0 must not pass unseen.
+fn relative_error(found: f64, truth: f64) -> f64 {
+    if found == truth { 0.0 } else { ((found - truth) / truth).max(-f64::MAX).min(f64::MAX) }
 }
 
 fn counted(rule: &'static str, shape: Shape, count: u64) -> Reason {
     Reason {
         rule: Cow::Borrowed(rule),
-        status: Status::Fail,
         measure: None,
         shape: Some(shape),
         value: count as f64,
@@ -98,13 +147,214 @@ fn counted(rule: &'static str, shape: Shape, count: u64) -> Reason {
     }
 }
 
-fn expected(asked: &Expectation, summary: &Summary) -> Option<Expected> {
-    let found = if asked.volume { summary.totals.volume } else { summary.totals.area }.unwrap_or(0.0);
-    let relative_error = (found - asked.value) / asked.value;
-    relative_error.is_finite().then(|| Expected {
-        volume: asked.volume.then_some(asked.value),
-        area: (!asked.volume).then_some(asked.value),
-        relative_error,
-        within: relative_error.abs() <= asked.tolerance_percent / 100.0,
-    })
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::super::{Checks, SCHEMA};
+    use super::*;
+
+    /// A mesh of one shape, or of tetrahedra with a boundary of triangles, that has a fault where the row puts one.
+    struct Row {
+        what: &'static str,
+        min: f64,
+        inverted: u64,
+        degenerate: u64,
+        fail_under: &'static [(&'static str, f64)],
+        status: Status,
+        rules: &'static [&'static str],
+    }
+
+    const SOUND: Row = Row {
+        what: "",
+        min: 0.5,
+        inverted: 0,
+        degenerate: 0,
+        fail_under: &[],
+        status: Status::Pass,
+        rules: &[],
+    };
+
+    const ROWS: &[Row] = &[
+        Row { what: "sound", ..SOUND },
+        Row { what: "at the limit is not under it", min: 0.1, ..SOUND },
+        Row { what: "preset", min: 0.0999, status: Status::Warn, rules: &["npl"], ..SOUND },
+        Row { what: "inverted", inverted: 2, status: Status::Fail, rules: &["inverted elements"], ..SOUND },
+        Row {
+            what: "degenerate fails, its minimum of 0 warns after it",
+            min: 0.0,
+            degenerate: 1,
+            status: Status::Fail,
+            rules: &["degenerate elements", "npl"],
+            ..SOUND
+        },
+        Row {
+            what: "both counts in a fixed order",
+            inverted: 1,
+            degenerate: 1,
+            status: Status::Fail,
+            rules: &["inverted elements", "degenerate elements"],
+            ..SOUND
+        },
+        Row {
+            what: "the user's limit, over the preset's",
+            fail_under: &[("M31", 0.6)],
+            status: Status::Fail,
+            rules: &["fail under"],
+            ..SOUND
+        },
+        Row { what: "at the user's limit", fail_under: &[("M31", 0.5)], ..SOUND },
+        Row {
+            what: "the user's limit takes the place of the preset's",
+            min: 0.07,
+            fail_under: &[("M31", 0.05)],
+            ..SOUND
+        },
+        Row {
+            what: "one value, one reason",
+            min: 0.07,
+            fail_under: &[("M31", 0.2)],
+            status: Status::Fail,
+            rules: &["fail under"],
+            ..SOUND
+        },
+        Row {
+            what: "a limit for another measure leaves the preset in force",
+            min: 0.07,
+            fail_under: &[("M33", 0.9)],
+            status: Status::Warn,
+            rules: &["npl"],
+            ..SOUND
+        },
+    ];
+
+    fn shape_summary(row: &Row) -> serde_json::Value {
+        json!({
+            "count": 10, "order": {"1": 10}, "inverted": row.inverted, "degenerate": row.degenerate,
+            "measures": {"M31": {
+                "on": "element", "count": 10, "max": 1.0, "min": row.min, "min_element": 7, "mean": 0.8, "sd": 0.1,
+                "quantiles": {}, "histogram": [],
+            }},
+            "correlation": {},
+        })
+    }
+
+    fn summary(shapes: &[(&str, &Row)]) -> Summary {
+        let shapes: serde_json::Map<_, _> =
+            shapes.iter().map(|(name, row)| ((*name).to_owned(), shape_summary(row))).collect();
+        serde_json::from_value(json!({
+            "schema": SCHEMA,
+            "mesh": {"name": "m", "path": "m.inp", "format": "abaqus", "compression": null, "bytes": 1, "xxh3": "0"},
+            "nodes": {"count": 0, "unused": 0, "bounds": null},
+            "elements": {"count": 10, "by_type": {}, "not_measured": {}},
+            "shapes": shapes,
+            "totals": {"area": null, "volume": 200.0},
+            "sizes": {"edge_length": null, "element_size": null},
+            "checks": Checks::default(),
+            "expected": null,
+            "verdict": {"status": "pass", "reasons": []},
+        }))
+        .expect("the summary's own schema")
+    }
+
+    fn rules_of(summary: &Summary) -> Vec<&str> {
+        summary.verdict.reasons.iter().map(|reason| reason.rule.as_ref()).collect()
+    }
+
+    fn asked(row: &Row) -> Judgement {
+        let limit = |(code, value): &(&str, f64)| FailUnder { measure: (*code).to_owned(), value: *value };
+        Judgement { fail_under: row.fail_under.iter().map(limit).collect(), expectation: None }
+    }
+
+    #[test]
+    fn verdicts() {
+        for row in ROWS {
+            let mut found = summary(&[("tetrahedron", row)]);
+            asked(row).judge(&mut found);
+            assert_eq!(found.verdict.status, row.status, "{}", row.what);
+            assert_eq!(rules_of(&found), row.rules, "{}", row.what);
+        }
+    }
+
+    #[test]
+    fn a_reason_names_the_value_the_limit_and_the_element() {
+        let row = Row { min: 0.04, ..SOUND };
+        let mut found = summary(&[("tetrahedron", &row)]);
+        Judgement::default().judge(&mut found);
+        let expected = Reason {
+            rule: "npl".into(),
+            measure: Some("M31".to_owned()),
+            shape: Some(Shape::Tetrahedron),
+            value: 0.04,
+            limit: 0.1,
+            element: Some(7),
+        };
+        assert_eq!(found.verdict.reasons, [expected]);
+    }
+
+    #[test]
+    fn boundary_shapes_have_no_say() {
+        for row in ROWS {
+            let mut found = summary(&[("triangle", row), ("hexahedron", &SOUND)]);
+            let fail_under = asked(row).fail_under.into_iter().filter(|f| f.value <= SOUND.min).collect();
+            Judgement { fail_under, expectation: None }.judge(&mut found);
+            assert_eq!(found.verdict, Verdict { status: Status::Pass, reasons: vec![] }, "{}", row.what);
+        }
+    }
+
+    #[test]
+    fn a_surface_mesh_is_judged_by_its_surface() {
+        let mut found = summary(&[("triangle", &Row { inverted: 3, ..SOUND })]);
+        Judgement::default().judge(&mut found);
+        assert_eq!((found.verdict.status, found.verdict.reasons[0].value), (Status::Fail, 3.0));
+    }
+
+    #[test]
+    fn failures_stand_before_warnings_across_shapes() {
+        let (weak, bad) = (Row { min: 0.05, ..SOUND }, Row { min: 0.0, degenerate: 1, ..SOUND });
+        let mut found = summary(&[("tetrahedron", &weak), ("wedge", &bad)]);
+        Judgement { fail_under: vec![], expectation: Some(expect(true, 100.0)) }.judge(&mut found);
+        assert_eq!(rules_of(&found), ["expected volume", "degenerate elements", "npl", "npl"]);
+        assert_eq!(found.verdict.reasons[2].shape, Some(Shape::Tetrahedron));
+    }
+
+    fn expect(volume: bool, value: f64) -> Expectation {
+        Expectation { volume, value, tolerance_percent: 0.5 }
+    }
+
+    #[test]
+    fn expected_volumes_and_areas() {
+        // (is a volume, true value, relative error, within); the mesh has a volume of 200 and no area
+        let rows = [
+            (true, 200.0, 0.0, true),
+            (true, 201.0, -1.0 / 201.0, true),
+            (true, 199.0, 1.0 / 199.0, false),
+            (true, 400.0, -0.5, false),
+            (false, 78.5, -1.0, false),
+            (true, 0.0, f64::MAX, false),
+            (false, 0.0, 0.0, true),
+            (true, f64::NAN, -f64::MAX, false),
+        ];
+        for (volume, value, relative_error, within) in rows {
+            let mut found = summary(&[("tetrahedron", &SOUND)]);
+            Judgement { fail_under: vec![], expectation: Some(expect(volume, value)) }.judge(&mut found);
+            let met = found.expected.expect("what was asked is answered");
+            assert_eq!((met.relative_error, met.within), (relative_error, within), "{value}");
+            assert_eq!((met.volume.is_some(), met.area.is_some()), (volume, !volume));
+            let rule = if volume { "expected volume" } else { "expected area" };
+            assert_eq!(rules_of(&found), if within { vec![] } else { vec![rule] }, "{value}");
+            if let Some(reason) = found.verdict.reasons.first() {
+                assert_eq!((reason.value, reason.limit), (relative_error, 0.005));
+            }
+        }
+    }
+
+    #[test]
+    fn judging_again_forgets_the_old_verdict() {
+        let mut found = summary(&[("tetrahedron", &SOUND)]);
+        Judgement { fail_under: vec![], expectation: Some(expect(true, 1.0)) }.judge(&mut found);
+        assert_eq!(found.verdict.status, Status::Fail);
+        Judgement::default().judge(&mut found);
+        assert_eq!((found.verdict.status, found.expected), (Status::Pass, None));
+    }
 }
