@@ -41,8 +41,8 @@ fn head_table(summary: &Summary, style: &Style) -> comfy_table::Table {
     for (label, text) in head::lines(summary) {
         table.add_row([label.to_owned(), text]);
     }
-    if let Some(column) = table.column_mut(0) {
-        column.set_padding((2, 1));
+    for (column, padding) in table.column_iter_mut().zip([(2, 1), (1, 0)]) {
+        column.set_padding(padding);
     }
     table
 }

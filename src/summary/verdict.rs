@@ -133,7 +133,8 @@ impl Expectation {
 
 /// (found - truth) / truth, always finite: JSON has no infinity, and a true value of 0 must not pass unseen.
 fn relative_error(found: f64, truth: f64) -> f64 {
-    if found == truth { 0.0 } else { ((found - truth) / truth).max(-f64::MAX).min(f64::MAX) }
+    let error = if found == truth { 0.0 } else { (found - truth) / truth };
+    if error.is_nan() { f64::MAX } else { error.clamp(-f64::MAX, f64::MAX) }
 }
 
 fn counted(rule: &'static str, shape: Shape, count: u64) -> Reason {
