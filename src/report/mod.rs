@@ -1,1 +1,51 @@
-//! A summary as text.
+//! Summaries as text: the report's tables for people, CSV, JSON and Markdown for what comes after.
+//!
+//! Names come out of mesh files, so every report makes them harmless: no control character reaches a terminal.
+
+mod csv;
+mod head;
+mod json;
+mod layout;
+mod markdown;
+mod numbers;
+mod reasons;
+mod safe;
+mod table;
+
+use std::io::{self, Write};
+
+use crate::summary::Summary;
+
+/// One way of writing summaries.
+#[derive(Debug)]
+pub struct Report {
+    /// The name that users choose it by.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub title: &'static str,
+    /// Writes the summaries.
+    pub render: fn(&[Summary], &Style, &mut dyn Write) -> io::Result<()>,
+}
+
+/// How a report for people shall look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Style {
+    /// Whether the verdict is coloured by ANSI escape codes.
+    pub color: bool,
+    /// Columns of the terminal; without it lines are as long as they need to be.
+    pub width: Option<u16>,
+}
+
+/// Every report; the first is for people.
+pub const REPORTS: &[Report] = &[
+    Report { name: "table", title: "the report's tables, for a terminal", render: table::render },
+    Report { name: "json", title: "the summary, indented; an array of several", render: json::render },
+    Report { name: "jsonl", title: "the summaries, one a line", render: json::render_lines },
+    Report { name: "csv", title: "one row for each mesh, shape and measure", render: csv::render },
+    Report { name: "markdown", title: "tables for a comment on a merge request", render: markdown::render },
+];
+
+/// The report of that name.
+pub fn find(name: &str) -> Option<&'static Report> {
+    REPORTS.iter().find(|report| report.name == name)
+}

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::mesh::Shape;
 
-pub use verdict::{Expectation, FailUnder, Judgement};
+pub use verdict::{Expectation, FailUnder, Judgement, rules};
 
 /// The schema's name and version.
 pub const SCHEMA: &str = "meshgauge.summary/1";
@@ -243,10 +243,8 @@ pub enum Status {
 /// Why a mesh is not a pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reason {
-    /// The rule's name.
+    /// The rule's name: `npl`, `fail under`, `inverted elements`, ...
     pub rule: Cow<'static, str>,
-    /// How bad it is.
-    pub status: Status,
     /// The measure, where the rule is about one.
     pub measure: Option<String>,
     /// The shape, where the rule is about one.
@@ -276,6 +274,24 @@ pub struct Run {
     pub peak_rss_bytes: u64,
     /// Measured elements a second.
     pub elements_per_second: f64,
+}
+
+impl Status {
+    /// The status as it stands in a summary.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Status::Pass => "pass",
+            Status::Warn => "warn",
+            Status::Fail => "fail",
+        }
+    }
+}
+
+impl Reason {
+    /// How bad it is: the rule tells.
+    pub fn status(&self) -> Status {
+        if self.rule == rules::NPL { Status::Warn } else { Status::Fail }
+    }
 }
 
 impl Summary {

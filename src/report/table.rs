@@ -1,0 +1,116 @@
+//! The report's tables for a terminal: a short head for each mesh, then one table for each shape.
+
+use std::io::{self, Write};
+
+use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, TableStyle};
+
+use super::layout::{self, Row};
+use super::numbers::{score, spread};
+use super::safe::escaped;
+use super::{Style, head};
+use crate::summary::{Status, Summary};
+
+/// Columns that a table takes besides the mesh's name, with element numbers of up to nine digits.
+const BESIDES_MESH: u16 = 60;
+
+/// Names are not cut below this.
+const SHORTEST_NAME: u16 = 12;
+
+/// Heads and tables.
+pub fn render(summaries: &[Summary], style: &Style, out: &mut dyn Write) -> io::Result<()> {
+    for summary in summaries {
+        let name = bold(&escaped(&summary.mesh.name), style);
+        writeln!(out, "{name}  {}", colored(summary.verdict.status, style))?;
+        write_lines(&head_table(summary, style), out)?;
+        writeln!(out)?;
+    }
+    for table in layout::tables(summaries) {
+        writeln!(out, "{}", bold(&escaped(&table.title()), style))?;
+        write_lines(&measures(&table, style), out)?;
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn head_table(summary: &Summary, style: &Style) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
+    table.load_style(TableStyle::new()).set_content_arrangement(ContentArrangement::Dynamic);
+    if let Some(width) = style.width {
+        table.set_width(width);
+    }
+    for (label, text) in head::lines(summary) {
+        table.add_row([label.to_owned(), text]);
+    }
+    for (column, padding) in table.column_iter_mut().zip([(2, 1), (1, 0)]) {
+        column.set_padding(padding);
+    }
+    table
+}
+
+fn measures(found: &layout::Table, style: &Style) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
+    let rule = TableStyle::new()
+        .header_lines(ContentLineStyle::none())
+        .header_separator(LineStyle::none().fill('─').junction('─'));
+    table.load_style(rule).set_content_arrangement(ContentArrangement::Disabled);
+    let columns = layout::COLUMNS.map(|name| name.replace(' ', "\n"));
+    table.set_header(["mesh", "measure"].map(str::to_owned).into_iter().chain(columns));
+    let width = style.width.map(|width| width.saturating_sub(BESIDES_MESH).max(SHORTEST_NAME));
+    table.add_rows(found.rows.iter().map(|row| cells(row, width)));
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((if i == 0 { 2 } else { 1 }, 0));
+        if i > 1 {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+fn cells(row: &Row, width: Option<u16>) -> [String; 7] {
+    let found = row.found;
+    let name = escaped(row.mesh);
+    [
+        width.map_or_else(|| name.clone(), |width| shortened(&name, width.into())),
+        escaped(row.code),
+        score(found.max),
+        score(found.min),
+        found.min_element.to_string(),
+        score(found.mean),
+        spread(found.sd),
+    ]
+}
+
+/// A name without its middle, which seldom tells meshes apart.
+fn shortened(name: &str, width: usize) -> String {
+    let length = name.chars().count();
+    if length <= width {
+        return name.to_owned();
+    }
+    let (start, end) = ((width - 1) / 2, width - 1 - (width - 1) / 2);
+    name.chars().take(start).chain(['…']).chain(name.chars().skip(length - end)).collect()
+}
+
+fn write_lines(table: &comfy_table::Table, out: &mut dyn Write) -> io::Result<()> {
+    for line in table.lines() {
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+fn colored(status: Status, style: &Style) -> String {
+    let color = match status {
+        Status::Pass => "32",
+        Status::Warn => "33",
+        Status::Fail => "31",
+    };
+    ansi(color, status.name(), style)
+}
+
+fn bold(text: &str, style: &Style) -> String {
+    ansi("1", text, style)
+}
+
+/// The text under an SGR code, where the style has colour.
+fn ansi(code: &str, text: &str, style: &Style) -> String {
+    if style.color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
+}
