@@ -15,7 +15,7 @@ use crate::mesh::{Class, Nodes, Shape};
 use crate::statistics::{Moments, Spread};
 use crate::summary::{
     Bounds, Checks, Elements, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
-    ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict,
+    ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict, rules,
 };
 
 /// Everything that a run found.
@@ -32,7 +32,7 @@ pub(super) struct Found<'a> {
 
 /// Puts the summary together and judges it.
 pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
-    let shapes = shapes(&found, &options.measures);
+    let shapes = shapes(&found);
     let mut summary = Summary {
         schema: Cow::Borrowed(SCHEMA),
         mesh: mesh_file(&found),
@@ -49,6 +49,7 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
     summary.sizes = sizes(&found, summary.dimension());
     options.judgement.judge(&mut summary);
     name_first_elements(&found, &mut summary);
+    keep_measures(&mut summary, &options.measures);
     if options.run_info {
         summary.run = Some(run(&found));
     }
@@ -89,13 +90,13 @@ fn elements(ledger: &Ledger) -> Elements {
     elements
 }
 
-fn shapes(found: &Found<'_>, wanted: &[String]) -> BTreeMap<Shape, ShapeSummary> {
+fn shapes(found: &Found<'_>) -> BTreeMap<Shape, ShapeSummary> {
     let mut shapes = BTreeMap::new();
     for shape in Shape::ALL {
         if let (Some(statistics), Some(bins)) = (&found.merged.shapes[shape.index()], found.bins.shape(shape))
         {
             let order = order(&found.merged.ledger, shape);
-            shapes.insert(shape, shape_summary(shape, statistics, bins, order, wanted));
+            shapes.insert(shape, shape_summary(shape, statistics, bins, order));
         }
     }
     shapes
@@ -106,10 +107,8 @@ fn shape_summary(
     statistics: &ShapeStatistics,
     bins: &ShapeBins,
     order: BTreeMap<String, u64>,
-    wanted: &[String],
 ) -> ShapeSummary {
     let is_solid = shape.dimension() == 3;
-    let is_wanted = |code: &str| wanted.is_empty() || wanted.iter().any(|w| w == code);
     let mut found = ShapeSummary {
         count: statistics.count,
         order,
@@ -124,10 +123,10 @@ fn shape_summary(
     for (subject, what) in measures::subjects(shape).iter().enumerate() {
         let moments = &statistics.subjects[subject];
         let rows = what.family.measures();
-        for (i, row) in rows.iter().enumerate().filter(|(_, row)| is_wanted(row.code)) {
+        for (i, row) in rows.iter().enumerate() {
             let summary = measure_summary(what.on, moments, i, &bins.measures[subject][i]);
             found.measures.insert(row.code.to_owned(), summary);
-            for (j, other) in rows.iter().enumerate().skip(i + 1).filter(|(_, row)| is_wanted(row.code)) {
+            for (j, other) in rows.iter().enumerate().skip(i + 1) {
                 found.correlation.insert(format!("{} {}", row.code, other.code), moments.correlation(i, j));
             }
         }
@@ -239,11 +238,23 @@ fn name_first_elements(found: &Found<'_>, summary: &mut Summary) {
             && let Some(statistics) = &found.merged.shapes[shape.index()]
         {
             reason.element = match &*reason.rule {
-                "inverted elements" => inverted(statistics).first,
-                "degenerate elements" => statistics.degenerate.first,
+                rules::INVERTED => inverted(statistics).first,
+                rules::DEGENERATE => statistics.degenerate.first,
                 _ => None,
             };
         }
+    }
+}
+
+/// Leaves only the measures that were asked for: the mesh was judged by all of them.
+fn keep_measures(summary: &mut Summary, wanted: &[String]) {
+    if wanted.is_empty() {
+        return;
+    }
+    let is_wanted = |code: &str| wanted.iter().any(|w| w == code);
+    for shape in summary.shapes.values_mut() {
+        shape.measures.retain(|code, _| is_wanted(code));
+        shape.correlation.retain(|pair, _| pair.split(' ').all(is_wanted));
     }
 }
 

@@ -11,6 +11,7 @@ pub fn in_words(reason: &Reason, summary: &Summary) -> String {
     let number = reason.value as u64;
     match (reason.rule.as_ref(), reason.shape) {
         (rules::NPL, _) => format!("{}: worth a look (NPL)", under(reason, summary, "")),
+        (rules::NOTHING_MEASURED, _) => "no element is one that a measure is defined for".to_owned(),
         (rules::FAIL_UNDER, _) => under(reason, summary, "the limit "),
         (rules::INVERTED, Some(shape)) => {
             format!("{}: oriented against the rest of the mesh", shapes(number, "inverted", shape))

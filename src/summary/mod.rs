@@ -290,7 +290,10 @@ impl Status {
 impl Reason {
     /// How bad it is: the rule tells.
     pub fn status(&self) -> Status {
-        if self.rule == rules::NPL { Status::Warn } else { Status::Fail }
+        match &*self.rule {
+            rules::NPL | rules::NOTHING_MEASURED => Status::Warn,
+            _ => Status::Fail,
+        }
     }
 }
 

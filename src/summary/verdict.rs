@@ -18,6 +18,8 @@ pub mod rules {
     pub const INVERTED: &str = "inverted elements";
     /// Fails where elements have no area, no volume or an edge without length.
     pub const DEGENERATE: &str = "degenerate elements";
+    /// Warns where no element of the mesh is one that a measure is defined for.
+    pub const NOTHING_MEASURED: &str = "nothing measured";
     /// Fails where the volume is not what the user expects.
     pub const EXPECTED_VOLUME: &str = "expected volume";
     /// Fails where the area is not what the user expects.
@@ -65,6 +67,9 @@ impl Judgement {
             && !found.within
         {
             reasons.push(asked.missed(found.relative_error));
+        }
+        if summary.shapes.is_empty() {
+            reasons.push(nothing_measured());
         }
         for (shape, found) in summary.main_shapes() {
             for (rule, count) in [(rules::INVERTED, found.inverted), (rules::DEGENERATE, found.degenerate)] {
@@ -135,6 +140,17 @@ impl Expectation {
 fn relative_error(found: f64, truth: f64) -> f64 {
     let error = if found == truth { 0.0 } else { (found - truth) / truth };
     if error.is_nan() { f64::MAX } else { error.clamp(-f64::MAX, f64::MAX) }
+}
+
+fn nothing_measured() -> Reason {
+    Reason {
+        rule: Cow::Borrowed(rules::NOTHING_MEASURED),
+        measure: None,
+        shape: None,
+        value: 0.0,
+        limit: 1.0,
+        element: None,
+    }
 }
 
 fn counted(rule: &'static str, shape: Shape, count: u64) -> Reason {

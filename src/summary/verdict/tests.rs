@@ -201,3 +201,11 @@ fn judging_again_forgets_the_old_verdict() {
     Judgement::default().judge(&mut found);
     assert_eq!((found.verdict.status, found.expected), (Status::Pass, None));
 }
+
+#[test]
+fn a_mesh_without_a_measured_element_is_no_pass() {
+    let mut summary = summary(&[]);
+    Judgement::default().judge(&mut summary);
+    assert_eq!(summary.verdict.status, Status::Warn);
+    assert_eq!(summary.verdict.reasons[0].rule, rules::NOTHING_MEASURED);
+}
