@@ -9,6 +9,8 @@ const STARTS: &[(&[u8], &str)] = &[
     (b"Rar!\x1a\x07", "a RAR archive"),
     (b"\x1f\x9d", "a file packed by compress (.Z)"),
     (b"LZIP", "a file packed by lzip"),
+    (b"\x5d\0\0", "a file packed by lzma: repack it as .xz"),
+    (b"\x02\x21\x4c\x18", "an LZ4 file of the legacy kind: repack it"),
     (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
     (b"CDF\x01", "a NetCDF file"),
     (b"CDF\x02", "a NetCDF file"),
