@@ -1,6 +1,6 @@
 //! Area, volume, orientation and edge lengths of whole elements of any shape.
 
-use super::elementary::{ROUNDING, unit};
+use super::elementary::{ROUNDING2, unit};
 use super::vector::{Vector, add, choose, cross, dot, edge, larger, reach, smaller, square};
 use super::{quadrilateral, tetrahedron, triangle};
 use crate::mesh::Shape;
@@ -120,25 +120,25 @@ impl Extent {
     fn of_surface(normal: &Vector, bound: f64, length: f64) -> Self {
         let squared = square(normal);
         let area = squared.sqrt() * 0.5 * length * length;
-        Extent { size: area, sign: sign(normal[2], bound.sqrt()), certain: squared > bound }
+        Extent { size: area, sign: sign(normal[2], bound), certain: squared > bound }
     }
 
-    /// From 6V and a bound on its error, in units of `length`.
+    /// From 6V and the square of a bound on its error, in units of `length`.
     #[inline(always)]
     fn of_solid(volume: f64, bound: f64, length: f64) -> Self {
         let size = volume * (1.0 / 6.0) * length * length * length;
-        Extent { size, sign: sign(volume, bound), certain: volume.abs() > bound }
+        Extent { size, sign: sign(volume, bound), certain: volume * volume > bound }
     }
 }
 
-/// +1 or -1, or 0 where `x` is within `bound` of 0.
+/// +1 or -1, or 0 where `x` is within a bound of 0, given the bound's square.
 #[inline(always)]
 fn sign(x: f64, bound: f64) -> f64 {
-    choose(x > bound, 1.0, choose(x < -bound, -1.0, 0.0))
+    choose(x * x > bound, choose(x > 0.0, 1.0, -1.0), 0.0)
 }
 
-/// 6V of a solid and a bound on its rounding error, by the divergence theorem: the sum over the faces of the flux of
-/// the position.
+/// 6V of a solid and the square of a bound on its rounding error, by the divergence theorem: the sum over the faces of
+/// the flux of the position.
 ///
 /// The flux through a bilinear face with corners a, b, c, d is (a+b+c+d)/4 · (c-a)×(d-b), the mean of the fluxes
 /// through the two pairs of triangles that a diagonal makes of it.
@@ -159,7 +159,7 @@ fn divergence<const N: usize>(shape: Shape, p: &[Vector; N], scale: f64) -> (f64
         sum += 0.25 * dot(&middle, &cross(&u, &v));
         magnitude += 0.25 * permanent(&middle, &u, &v);
     });
-    (sum, ROUNDING * magnitude)
+    (sum, ROUNDING2 * (magnitude * magnitude))
 }
 
 /// The triple product with all signs positive: what its rounding error is relative to.
