@@ -33,7 +33,7 @@ impl Default for QuadrilateralFlaws {
     }
 }
 
-/// Geometry of a batch of whole elements; see [`geometry::Element`](super::geometry::Element).
+/// Geometry of a batch of whole elements; see [`geometry::Element`].
 #[derive(Debug, Clone)]
 pub struct Geometry {
     /// Signed volumes of solids, areas of surfaces.
