@@ -33,7 +33,7 @@ impl Default for QuadrilateralFlaws {
     }
 }
 
-/// Geometry of a batch of whole elements; see [`geometry::Element`](super::geometry::Element).
+/// Geometry of a batch of whole elements; see [`geometry::Element`].
 #[derive(Debug, Clone)]
 pub struct Geometry {
     /// Signed volumes of solids, areas of surfaces.
@@ -258,10 +258,7 @@ fn geometry_lanes(shape: Shape, corners: &[Corner], out: &mut Geometry) {
 fn shape_lanes<const N: usize>(shape: Shape, corners: &[Corner], out: &mut Geometry) {
     let corners: &[Corner; N] = corners.first_chunk().expect("as many corners as the shape has");
     for lane in 0..LANES {
-        let mut points = [[0.0; 3]; N];
-        for (to, corner) in points.iter_mut().zip(corners) {
-            *to = point(corner, lane);
-        }
+        let points: [Vector; N] = std::array::from_fn(|i| point(&corners[i], lane));
         let element = geometry::of_corners(shape, &points);
         out.extent[lane] = element.extent;
         out.sign[lane] = element.sign;

@@ -1,7 +1,7 @@
 //! The twelve measures of the NPL report: coordinates in, scores in \[0, 1\] out. No file and no thread is known here.
 //!
 //! A measure is a row of a table and a plain `f64` function of the element's shared facts: its edges, face areas and
-//! volume. The [batch](batch) runs the very same functions over 64 elements side by side, compiled for several
+//! volume. The [`batch`] runs the very same functions over 64 elements side by side, compiled for several
 //! vector widths, and gives the same bits as one element at a time does on any machine. The price is a discipline
 //! for everything in this folder that is called per element: no branches with effects, no early return, no closures
 //! (values would spill), no `mul_add`, and none of `powf`, `cbrt`, `acos` and `hypot`, whose calls stop a loop from

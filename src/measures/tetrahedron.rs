@@ -1,6 +1,6 @@
 //! M31 to M34: tetrahedra.
 
-use super::elementary::{ROUNDING, cosine_of_two_thirds, unit};
+use super::elementary::{ROUNDING2, cosine_of_two_thirds, inverse_root, unit};
 use super::vector::{Vector, choose, choose_vector, cross, dot, edge, larger, reach, smaller, square};
 use super::{COMSOL_TETRAHEDRON, Family};
 
@@ -67,7 +67,7 @@ impl Facts {
             square(&normals[3]).sqrt(),
         ];
         let (determinant, bound) = edges.determinant();
-        let volume = choose(determinant.abs() > bound, determinant.abs(), 0.0);
+        let volume = choose(determinant * determinant > bound, determinant.abs(), 0.0);
         Facts { squares: edges.squares, normals, areas, volume }
     }
 
@@ -100,7 +100,7 @@ impl Edges {
         Edges { vectors, squares }
     }
 
-    /// 6V with its sign, and a bound on its rounding error.
+    /// 6V with its sign, and the square of a bound on its rounding error.
     ///
     /// Taken from corner 0 or 1, where the edges are shorter: three long edges to one far corner lose digits.
     #[inline(always)]
@@ -108,11 +108,11 @@ impl Edges {
         let [a, b, c, d, e, _] = &self.vectors;
         let [aa, bb, cc, dd, ee, _] = self.squares;
         let normal = choose_vector(dd * ee < bb * cc, &cross(d, e), &cross(b, c));
-        (dot(a, &normal), ROUNDING * (aa * smaller(dd * ee, bb * cc)).sqrt())
+        (dot(a, &normal), ROUNDING2 * (aa * smaller(dd * ee, bb * cc)))
     }
 }
 
-/// 6V with its sign, and a bound on its rounding error.
+/// 6V with its sign, and the square of a bound on its rounding error.
 #[inline(always)]
 pub(super) fn determinant(p: &[Vector; 4], scale: f64) -> (f64, f64) {
     Edges::of(p, scale).determinant()
@@ -122,7 +122,8 @@ pub(super) fn determinant(p: &[Vector; 4], scale: f64) -> (f64, f64) {
 fn volume_over_edges(t: &Facts) -> f64 {
     let [a, b, c, d, e, f] = t.squares;
     let sum = ((a + b) + (c + d)) + (e + f);
-    20.784_609_690_826_528 * t.volume / (sum * sum.sqrt())
+    let root = inverse_root::<2>(sum);
+    20.784_609_690_826_528 * t.volume * (root * root * root)
 }
 
 #[inline(always)]
@@ -138,16 +139,16 @@ fn gradient(t: &Facts) -> f64 {
     let from2 = a0 * l02 + a1 * l12 + a3 * l23;
     let from3 = a0 * l03 + a1 * l13 + a2 * l23;
     let most = larger(larger(from0, from1), larger(from2, from3));
-    let root = (2.0 * t.surface() / (pairs + 2.0 * t.volume * most)).sqrt();
-    1.600_976_133_417_754 * t.volume * (root * root.sqrt())
+    let root = inverse_root::<4>((pairs + 2.0 * t.volume * most) / (2.0 * t.surface()));
+    1.600_976_133_417_754 * t.volume * (root * root * root)
 }
 
 /// λ is the largest eigenvalue of Σ AᵢAᵢᵀ/(9V) over the faces' area vectors. With twice the area vectors and
 /// without the division, M33 = √2 6V / μ^¾.
 #[inline(always)]
 fn conditioning(t: &Facts) -> f64 {
-    let root = largest_eigenvalue(&t.normals).sqrt();
-    std::f64::consts::SQRT_2 * t.volume / (root * root.sqrt())
+    let root = inverse_root::<4>(largest_eigenvalue(&t.normals));
+    std::f64::consts::SQRT_2 * t.volume * (root * root * root)
 }
 
 /// The largest eigenvalue of N = Σ n nᵀ over four vectors: mean + 2ρ cos(θ/3), with ρ and θ from the invariants
@@ -230,7 +231,8 @@ fn radius_ratio(t: &Facts) -> f64 {
     let ball = ball.or(inside, square(&q), square_volume);
 
     let surface = t.surface();
-    6.0 * t.volume * (ball.below / (ball.above * (surface * surface))).sqrt()
+    let root = inverse_root::<2>(ball.below * ball.above * (surface * surface));
+    6.0 * t.volume * (ball.below * root)
 }
 
 /// A ball's 4R² as a fraction.

@@ -1,6 +1,6 @@
 //! M11 to M15: triangles of space, elements as well as faces.
 
-use super::elementary::{ROUNDING2, inverse_cube_root, unit};
+use super::elementary::{ROUNDING2, inverse_root, unit};
 use super::vector::{Vector, choose, choose_vector, cross, dot, edge, larger, reach, smaller, square, sub};
 use super::{COMSOL_TRIANGLE, Family};
 
@@ -52,6 +52,7 @@ struct Facts {
     shortest: f64,
     middle: f64,
     longest: f64,
+    inverse_perimeter: f64,
     /// Sum of the squared edges: 3l².
     squares: f64,
     /// 9l⁴ - 48A², as the sum of squares that it is.
@@ -69,25 +70,22 @@ impl Facts {
         let sides = Sides::of(p, scale);
         let [a, b, c] = sides.squares;
         let squares = a + b + c;
-        let longest = larger(larger(a, b), c);
-        let shortest = smaller(smaller(a, b), c);
-        let middle = larger(smaller(a, b), smaller(larger(a, b), c));
+        let longest2 = larger(larger(a, b), c);
+        let longest = longest2.sqrt();
+        let middle = larger(smaller(a, b), smaller(larger(a, b), c)).sqrt();
+        let shortest = smaller(smaller(a, b), c).sqrt();
         let (normal, bound) = sides.normal();
         let area2 = square(&normal);
         Facts {
-            shortest: shortest.sqrt(),
-            middle: middle.sqrt(),
-            longest: longest.sqrt(),
+            shortest,
+            middle,
+            longest,
+            inverse_perimeter: 1.0 / (shortest + middle + longest),
             squares,
             spread: sides.spread(),
             twice_area: choose(area2 > bound, area2.sqrt(), 0.0),
-            acute: squares > 2.0 * longest,
+            acute: squares > 2.0 * longest2,
         }
-    }
-
-    #[inline(always)]
-    fn perimeter(&self) -> f64 {
-        self.shortest + self.middle + self.longest
     }
 }
 
@@ -144,14 +142,13 @@ fn radius_ratio(t: &Facts) -> f64 {
     let n = t.twice_area;
     let above = choose(t.acute, n * n, n);
     let below = choose(t.acute, t.shortest * t.middle * t.longest, t.longest);
-    4.0 * above / (t.perimeter() * below)
+    4.0 * above * t.inverse_perimeter / below
 }
 
 /// 3√3 r²/A = 3√3 A/s², s the half perimeter.
 #[inline(always)]
 fn inradius_over_area(t: &Facts) -> f64 {
-    let perimeter = t.perimeter();
-    10.392_304_845_413_264 * t.twice_area / (perimeter * perimeter)
+    10.392_304_845_413_264 * t.twice_area * (t.inverse_perimeter * t.inverse_perimeter)
 }
 
 #[inline(always)]
@@ -161,8 +158,8 @@ fn area_over_edges(t: &Facts) -> f64 {
 
 #[inline(always)]
 fn gradient(t: &Facts) -> f64 {
-    let inradius = t.twice_area / t.perimeter();
-    let root = inverse_cube_root(t.longest * t.middle * (t.shortest + 4.0 * inradius));
+    let inradius = t.twice_area * t.inverse_perimeter;
+    let root = inverse_root::<3>(t.longest * t.middle * (t.shortest + 4.0 * inradius));
     1.926_315_038_298_355_3 * t.twice_area * (root * root)
 }
 

@@ -100,6 +100,17 @@ fn areas_and_volumes_are_right_to_the_rounding_of_their_terms() {
     }
 }
 
+/// Table 2 of the report: the triangular faces of mesh FD1's wedges are sectors of 10° and of radius 0.5, all alike.
+#[test]
+fn sectors_of_the_mesh_fd1_score_as_printed() {
+    let turn = 10f64.to_radians();
+    let sector = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5 * turn.cos(), 0.5 * turn.sin(), 0.0]];
+    let printed = ["0.318", "0.382", "0.296", "0.535", "0.152"];
+    for (found, printed) in triangle::score(&sector).into_iter().zip(printed) {
+        assert_eq!(format!("{found:.3}"), printed);
+    }
+}
+
 /// The golden sliver that an arc cosine gets wrong by 1e-9.
 #[test]
 fn angles_near_zero_keep_their_digits() {
