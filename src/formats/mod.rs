@@ -6,6 +6,7 @@
 
 mod batch;
 pub mod binary;
+mod gmsh;
 #[cfg(test)]
 pub(crate) mod reading;
 mod sink;
@@ -86,7 +87,7 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[];
+pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
