@@ -230,9 +230,9 @@ def main(folder):
 
     for ghosts in (0, 1):
         box(1, 2)
+        what = facts()
         gmsh.option.setNumber("Mesh.PartitionCreateGhostCells", ghosts)
         gmsh.model.mesh.partition(4)
-        what = facts()
         for version, binary in ((2.2, 0), (2.2, 1), (4.0, 0), (4.1, 0), (4.1, 1)):
             write(f"partitions_{ghosts}_{version}_{binary}.msh", version, binary, what)
 
