@@ -5,7 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::walk::{Gathered, Walk};
-use super::{Binary, Version, types};
+use super::words::Binary;
+use super::{Version, types};
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
 use crate::formats::{ElementLayout, ElementSink, Outline, PIECE_BYTES, Piece};

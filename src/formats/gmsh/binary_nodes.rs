@@ -4,8 +4,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Binary;
 use super::walk::{Gathered, Walk};
+use super::words::Binary;
 use crate::error::{Error, Result};
 use crate::formats::binary::{Endian, cut_records};
 use crate::formats::{NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};

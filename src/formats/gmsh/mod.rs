@@ -10,6 +10,7 @@ mod text_elements;
 mod text_nodes;
 mod types;
 mod walk;
+mod words;
 
 use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
@@ -18,6 +19,7 @@ use crate::input::Input;
 use rows::Rows;
 use text_nodes::Columns;
 use walk::Walk;
+use words::Binary;
 
 /// The format's row in the table of formats.
 pub(super) struct Gmsh;
@@ -123,16 +125,6 @@ struct Header {
     binary: Option<Binary>,
 }
 
-/// How numbers stand in binary sections.
-#[derive(Debug, Clone, Copy)]
-struct Binary {
-    endian: Endian,
-    /// Number of bytes of a tag or a count: 4 in MSH 2, those of the writer's `size_t` in 4.1.
-    word: usize,
-    /// The largest tag or count.
-    most: u64,
-}
-
 /// The versions of the format, as far as they differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
@@ -186,72 +178,6 @@ impl Header {
             _ => return Err(walk.malformed(at, "the number 1 of four bytes")),
         };
         Ok(Self { version, binary: Some(Binary { endian, word, most }) })
-    }
-}
-
-impl Binary {
-    /// The word at the start of `bytes`.
-    #[inline]
-    fn word<const WORD: usize>(self, bytes: &[u8]) -> u64 {
-        if WORD == 4 { self.endian.u32(bytes).into() } else { self.endian.u64(bytes) }
-    }
-
-    /// The tag at the start of `bytes`, `least` or more.
-    #[inline]
-    fn tag<const WORD: usize>(self, bytes: &[u8], least: u64) -> Result<u64> {
-        let tag = self.word::<WORD>(bytes);
-        if tag < least || tag > self.most { Err(self.no_tag::<WORD>(tag)) } else { Ok(tag) }
-    }
-
-    /// The tags that fill `bytes`, as many as `tags` has room for.
-    #[inline]
-    fn tags<const WORD: usize>(self, bytes: &[u8], tags: &mut [u64]) -> Result<()> {
-        // Those over the largest have a bit that it has not.
-        let mut bits = 0;
-        for (tag, raw) in tags.iter_mut().zip(bytes.chunks_exact(WORD)) {
-            *tag = self.word::<WORD>(raw);
-            bits |= *tag;
-        }
-        if bits & !self.most == 0 {
-            return Ok(());
-        }
-        Err(self.no_tag::<WORD>(tags.iter().copied().find(|&tag| tag > self.most).unwrap_or(bits)))
-    }
-
-    #[cold]
-    fn no_tag<const WORD: usize>(self, tag: u64) -> Error {
-        let found = if WORD == 4 { i64::from(tag as i32) } else { tag as i64 };
-        Error::malformed("a positive tag", format!("{found}"))
-    }
-
-    /// The count at the start of `bytes`.
-    fn count(self, bytes: &[u8]) -> Result<u64> {
-        let count = if self.word == 4 { self.word::<4>(bytes) } else { self.word::<8>(bytes) };
-        if count > self.most {
-            return Err(Error::malformed("a count", format!("{}", count as i64)));
-        }
-        Ok(count)
-    }
-
-    /// Bytes of the head of a block of MSH 4.1: three numbers of four bytes, and a count.
-    fn block_head(self) -> usize {
-        12 + self.word
-    }
-
-    /// The dimension of the entity that a block of MSH 4.1 belongs to.
-    fn dimension(self, head: &[u8]) -> Result<usize> {
-        match self.endian.u32(head) {
-            dimension @ 0..=3 => Ok(dimension as usize),
-            other => Err(no_dimension(i64::from(other as i32))),
-        }
-    }
-
-    /// The head of a section of MSH 4.1, as [`Version::block_counts`] in text.
-    fn block_counts(self, walk: &mut Walk<'_>) -> Result<(u64, u64)> {
-        let at = walk.at();
-        let head = walk.bytes(4 * self.word, "the numbers of blocks and nodes or elements")?;
-        let counts = self.count(head).and_then(|blocks| Ok((blocks, self.count(&head[self.word..])?)));
-        counts.map_err(|e| walk.place(e, at))
     }
 }
 
