@@ -4,6 +4,7 @@
 //! pieces of bounded size. And its layouts *decode* one piece. It knows no thread, no channel and no measure. Every
 //! format is one file here and one row of [`FORMATS`].
 
+mod abaqus;
 mod batch;
 pub mod binary;
 mod gmsh;
@@ -87,7 +88,7 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh];
+pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {

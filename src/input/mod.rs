@@ -2,6 +2,7 @@
 
 mod compression;
 mod content;
+mod include;
 mod mapped;
 mod name;
 mod packed;
@@ -10,8 +11,9 @@ mod scratch;
 mod source;
 mod unpack;
 
+use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use crate::error::{Error, Kind, Result};
@@ -19,6 +21,7 @@ use packed::Packed;
 
 pub use compression::Compression;
 pub use content::looks_like;
+pub use include::{Sibling, Siblings};
 pub use mapped::Window;
 pub use name::mesh_name;
 pub use scratch::{Scratch, ScratchFile, ScratchShare};
@@ -70,6 +73,8 @@ pub struct Input {
     pub compression: Option<&'static str>,
     /// Number of bytes of the file as it stands on disk, or as it came in.
     pub bytes_on_disk: u64,
+    /// The folder that the files which this one names must lie in; a stream has none.
+    folder: Option<PathBuf>,
     xxh3: Arc<OnceLock<u64>>,
 }
 
@@ -78,11 +83,18 @@ impl Input {
     /// any other. One layer of compression is undone; what is packed twice is refused.
     pub fn open(path: &Path, limits: &Limits, scratch: &Scratch) -> Result<Self> {
         let file = regular::open(path)?;
-        let mut packed = Packed::new(path, &file, limits.file_bytes);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        Ok(Self { folder: Some(folder.to_owned()), ..Self::open_file(path, &file, limits, scratch)? })
+    }
+
+    /// The mesh in an open regular file that the user knows as `path`.
+    fn open_file(path: &Path, file: &File, limits: &Limits, scratch: &Scratch) -> Result<Self> {
+        let mut packed = Packed::new(path, file, limits.file_bytes);
         if Compression::detect(packed.head(Compression::HEAD_BYTES)?).is_some() {
             return Self::unpack(packed, limits, scratch);
         }
-        let source = Source::new(path, &file)?;
+        let source = Source::new(path, file)?;
         if source.len() > limits.file_bytes {
             return Err(Error::limit("the size of the file", bytes(limits.file_bytes)).in_file(path));
         }
@@ -143,6 +155,7 @@ impl Input {
             limits: limits.clone(),
             compression,
             bytes_on_disk,
+            folder: None,
             xxh3: Arc::new(xxh3),
         })
     }

@@ -28,7 +28,8 @@ fn check(path: &Path, metadata: &Metadata) -> Result<()> {
     }
 }
 
-fn not_regular(kind: FileType) -> Option<&'static str> {
+/// What stands there, if it is no regular file.
+pub(super) fn not_regular(kind: FileType) -> Option<&'static str> {
     match kind {
         _ if kind.is_file() => None,
         _ if kind.is_dir() => Some("a directory"),

@@ -1,0 +1,109 @@
+//! Parts and their instances. A part's blocks are kept until its instances are known: every instance is a copy of
+//! them, moved, under a number of its own. A deck without any instance was written by a mesher: its parts stand as
+//! they are.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::elements::ElementLines;
+use super::nodes::NodeLines;
+use super::placement::{Affine, Placement};
+use super::types::Kind;
+use crate::error::{Error, Result};
+use crate::formats::{ElementLayout, NodeLayout, Outline, Piece};
+use crate::input::{Source, Spot};
+
+/// The bits of a node's number in the deck; the instance stands above them.
+const NUMBER_BITS: u32 = 40;
+/// The most instances, with a bit to spare.
+pub(super) const MOST_INSTANCES: usize = 1 << 23;
+
+/// A place in a deck, for errors that come later.
+#[derive(Clone)]
+pub(super) struct Place {
+    pub(super) source: Arc<Source>,
+    pub(super) at: u64,
+}
+
+impl Place {
+    /// Adds the place to an error.
+    pub(super) fn of(&self, error: Error) -> Error {
+        self.source.place(error, Spot::Text(self.at))
+    }
+}
+
+/// The data of one keyword, cut into pieces.
+pub(super) struct Block<T> {
+    pub(super) source: Arc<Source>,
+    pub(super) spans: Vec<Range<u64>>,
+    pub(super) what: T,
+}
+
+/// What a part, an instance or the assembly itself holds.
+#[derive(Default)]
+pub(super) struct Blocks {
+    pub(super) nodes: Vec<Block<Placement>>,
+    pub(super) elements: Vec<Block<Kind>>,
+    /// A keyword that makes nodes or elements and is not expanded: an error once the blocks are used.
+    pub(super) unexpanded: Option<(String, Place)>,
+}
+
+/// A `*PART`.
+pub(super) struct Part {
+    pub(super) blocks: Blocks,
+    pub(super) place: Place,
+}
+
+/// An `*INSTANCE`.
+pub(super) struct Instance {
+    pub(super) part: usize,
+    pub(super) own: Blocks,
+    pub(super) motion: Affine,
+    pub(super) place: Place,
+}
+
+impl Blocks {
+    /// Whether nothing is held: no nodes, no elements.
+    pub(super) fn is_empty(&self) -> bool {
+        self.nodes.is_empty() && self.elements.is_empty()
+    }
+
+    /// Yields the pieces as a copy with the given scope and motion.
+    pub(super) fn yield_to(
+        &self,
+        out: &mut dyn Outline,
+        scope: u64,
+        motion: Affine,
+        instances: Option<&Arc<HashMap<Vec<u8>, u64>>>,
+    ) -> Result<()> {
+        if let Some((keyword, place)) = &self.unexpanded {
+            return Err(place.of(Error::unsupported(format!("the keyword *{keyword} is not expanded"))));
+        }
+        for block in &self.nodes {
+            let placement = Placement { motion, ..block.what };
+            let layout: Arc<dyn NodeLayout> =
+                Arc::new(NodeLines { source: Arc::clone(&block.source), placement, scope });
+            for span in &block.spans {
+                out.nodes(Piece { layout: Arc::clone(&layout), span: span.clone() })?;
+            }
+        }
+        for block in &self.elements {
+            let layout: Arc<dyn ElementLayout> = Arc::new(ElementLines {
+                source: Arc::clone(&block.source),
+                kind: block.what.clone(),
+                scope,
+                instances: instances.cloned(),
+            });
+            for span in &block.spans {
+                out.elements(Piece { layout: Arc::clone(&layout), span: span.clone() })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The scope of the instance with this number, from 0. Scope 0 is the assembly's own, or that of a flat deck.
+pub(super) fn scope(instance: usize) -> u64 {
+    (instance as u64 + 1) << NUMBER_BITS
+}

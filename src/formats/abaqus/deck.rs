@@ -1,0 +1,327 @@
+//! What a deck says, keyword by keyword: which data are nodes and elements, and whose.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::assembly::{Block, Blocks, Instance, MOST_INSTANCES, Part, Place, scope};
+use super::elements::{MOST_NODES, cut_at_records};
+use super::fields::Fields;
+use super::keywords::{Keyword, plain};
+use super::placement::{Affine, Placement, System};
+use super::points::{Row, frame, motion, points};
+use super::types::{self, Kind};
+use crate::error::{Error, Result, excerpt};
+use crate::formats::{Outline, text};
+use crate::input::{Input, Source};
+
+/// Keywords that make nodes or elements out of others, or fetch them from elsewhere.
+const UNEXPANDED: [&str; 8] =
+    ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRICMODELGENERATION"];
+/// Keywords that the mesh hangs on: their abbreviations are refused rather than skipped.
+const SPELLED_OUT: [&str; 6] = ["NODE", "ELEMENT", "INCLUDE", "INSTANCE", "PART", "SYSTEM"];
+
+/// A deck as far as it was read.
+pub(super) struct Deck<'a> {
+    input: &'a Input,
+    out: &'a mut dyn Outline,
+    /// Types by name, user elements among them.
+    kinds: HashMap<String, Kind>,
+    parts: Vec<Part>,
+    part_names: HashMap<Vec<u8>, usize>,
+    instances: Vec<Instance>,
+    scopes: HashMap<Vec<u8>, u64>,
+    /// Blocks outside parts and instances that wait for the instances; without parts nothing waits.
+    outside: Blocks,
+    level: Level,
+    assembly: Option<Place>,
+    frame: Affine,
+    open: Open,
+    /// The last keyword.
+    place: Option<Place>,
+    found: bool,
+}
+
+/// Whose the data are.
+#[derive(Clone, Copy, PartialEq)]
+enum Level {
+    /// The whole model's: a flat deck, or the assembly.
+    Outside,
+    /// Of the last part.
+    Part,
+    /// Of the last instance.
+    Instance,
+}
+
+/// What the data lines at hand are.
+enum Open {
+    /// No keyword yet.
+    Nothing,
+    /// Data that is no mesh.
+    Other,
+    Nodes(System),
+    Elements(Kind),
+    /// Points of a `*SYSTEM`.
+    Frame(Vec<Row>),
+    /// Shift and turn of an `*INSTANCE`.
+    Motion(Vec<Row>),
+}
+
+impl<'a> Deck<'a> {
+    pub(super) fn new(input: &'a Input, out: &'a mut dyn Outline) -> Self {
+        Self {
+            input,
+            out,
+            kinds: HashMap::new(),
+            parts: Vec::new(),
+            part_names: HashMap::new(),
+            instances: Vec::new(),
+            scopes: HashMap::new(),
+            outside: Blocks::default(),
+            level: Level::Outside,
+            assembly: None,
+            frame: Affine::IDENTITY,
+            open: Open::Nothing,
+            place: None,
+            found: false,
+        }
+    }
+
+    /// Takes in a keyword line.
+    pub(super) fn keyword(&mut self, keyword: &Keyword, source: &Arc<Source>) -> Result<()> {
+        let place = Place { source: Arc::clone(source), at: keyword.at };
+        self.close()?;
+        self.place = Some(place.clone());
+        self.enter(keyword, &place).map_err(|e| place.of(e))
+    }
+
+    fn enter(&mut self, keyword: &Keyword, place: &Place) -> Result<()> {
+        self.open = Open::Other;
+        match keyword.name.as_str() {
+            "NODE" => self.open = Open::Nodes(system(keyword)?),
+            "ELEMENT" => self.open = Open::Elements(self.kind(&keyword.required("TYPE")?)?),
+            "USERELEMENT" => self.user_element(keyword)?,
+            "SYSTEM" => self.open = Open::Frame(Vec::new()),
+            "PART" => self.part(keyword, place)?,
+            "ENDPART" => self.leave(Level::Part, "*PART before *END PART")?,
+            "ASSEMBLY" => self.assembly = Some(place.clone()),
+            "ENDASSEMBLY" => {
+                let begun = self.assembly.take().is_some() && self.level == Level::Outside;
+                begun.then_some(()).ok_or_else(|| unbalanced("*ASSEMBLY before *END ASSEMBLY"))?;
+            }
+            "INSTANCE" => self.instance(keyword, place)?,
+            "ENDINSTANCE" => self.leave(Level::Instance, "*INSTANCE before *END INSTANCE")?,
+            name if UNEXPANDED.contains(&name) => {
+                let first = (name.to_owned(), place.clone());
+                self.blocks().unexpanded.get_or_insert(first);
+                self.flush()?;
+            }
+            name if name.len() >= 3
+                && SPELLED_OUT.iter().any(|k| k.len() > name.len() && k.starts_with(name)) =>
+            {
+                return Err(Error::unsupported(format!("the abbreviated keyword *{name} is not read")));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Takes in data lines of the keyword at hand.
+    pub(super) fn data(&mut self, source: &Arc<Source>, range: Range<u64>) -> Result<()> {
+        if matches!(self.open, Open::Other) {
+            return Ok(());
+        }
+        let bytes = source.peek(range.clone());
+        let mut fields = Fields::new(bytes);
+        let found = fields.next_line();
+        let first = range.start + fields.at as u64;
+        if !found.map_err(|_| source.malformed_text(first, "a data line"))? {
+            return Ok(());
+        }
+        // Pieces begin with a line, not with its first field.
+        let line =
+            memchr::memrchr(b'\n', &bytes[..fields.at]).map_or(range.start, |k| range.start + k as u64 + 1);
+        match &mut self.open {
+            Open::Other => Ok(()),
+            Open::Nothing => Err(source.malformed_text(first, "a keyword line, as *HEADING or *NODE")),
+            Open::Frame(rows) | Open::Motion(rows) => points(source, line..range.end, rows),
+            Open::Nodes(system) => {
+                let what = Placement { system: *system, frame: self.frame, motion: Affine::IDENTITY };
+                let mut spans = Vec::new();
+                text::cut_at_lines(self.input, source, line..range.end, |span| {
+                    spans.push(span);
+                    Ok(())
+                })?;
+                self.blocks().nodes.push(Block { source: Arc::clone(source), spans, what });
+                self.flush()
+            }
+            Open::Elements(kind) => {
+                let what = kind.clone();
+                let spans = cut_at_records(self.input, source, &what, line..range.end)?;
+                self.blocks().elements.push(Block { source: Arc::clone(source), spans, what });
+                self.flush()
+            }
+        }
+    }
+
+    /// Where blocks go now.
+    fn blocks(&mut self) -> &mut Blocks {
+        match self.level {
+            Level::Part => self.parts.last_mut().map(|part| &mut part.blocks),
+            Level::Instance => self.instances.last_mut().map(|instance| &mut instance.own),
+            Level::Outside => None,
+        }
+        .unwrap_or(&mut self.outside)
+    }
+
+    /// Yields what need not wait.
+    fn flush(&mut self) -> Result<()> {
+        if self.parts.is_empty() {
+            self.found |= !self.outside.is_empty();
+            std::mem::take(&mut self.outside).yield_to(self.out, 0, Affine::IDENTITY, None)?;
+        }
+        Ok(())
+    }
+
+    /// Ends the data of the last keyword.
+    fn close(&mut self) -> Result<()> {
+        let done = match std::mem::replace(&mut self.open, Open::Other) {
+            Open::Frame(rows) => frame(&rows).map(|frame| self.frame = frame),
+            Open::Motion(rows) => motion(&rows).map(|motion| {
+                if let Some(instance) = self.instances.last_mut() {
+                    instance.motion = motion;
+                }
+            }),
+            _ => Some(()),
+        };
+        match (done, &self.place) {
+            (None, Some(place)) => {
+                let expected =
+                    "points that are apart: *SYSTEM takes six and three numbers, *INSTANCE three and seven";
+                Err(place.of(Error::malformed(expected, "others on the lines after this one")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn kind(&mut self, name: &[u8]) -> Result<Kind> {
+        let name = name.escape_ascii().to_string();
+        Ok(self.kinds.entry(name).or_insert_with_key(|name| types::resolve(name)).clone())
+    }
+
+    fn user_element(&mut self, keyword: &Keyword) -> Result<()> {
+        let name = keyword.required("TYPE")?.escape_ascii().to_string();
+        let nodes = match keyword.value("NODES") {
+            None => 0,
+            Some(value) => {
+                let nodes = Fields::new(value).integer("a number of nodes")?;
+                if nodes > MOST_NODES as u64 {
+                    return Err(Error::limit("number of nodes of an element", MOST_NODES));
+                }
+                nodes as usize
+            }
+        };
+        let kind = types::user(&name, nodes);
+        self.kinds.insert(name, kind);
+        Ok(())
+    }
+
+    fn part(&mut self, keyword: &Keyword, place: &Place) -> Result<()> {
+        if self.level != Level::Outside {
+            return Err(unbalanced("*END PART or *END INSTANCE before another *PART"));
+        }
+        let name = keyword.required("NAME")?;
+        if self.part_names.insert(name.clone(), self.parts.len()).is_some() {
+            return Err(Error::malformed("a part name of its own", excerpt(&name)));
+        }
+        self.parts.push(Part { blocks: Blocks::default(), place: place.clone() });
+        self.level = Level::Part;
+        self.frame = Affine::IDENTITY;
+        Ok(())
+    }
+
+    fn instance(&mut self, keyword: &Keyword, place: &Place) -> Result<()> {
+        if self.level != Level::Outside {
+            return Err(unbalanced("*END PART or *END INSTANCE before another *INSTANCE"));
+        }
+        if keyword.value("LIBRARY").is_some() || keyword.value("INSTANCE").is_some() {
+            return Err(Error::unsupported(
+                "an *INSTANCE from another analysis (LIBRARY=, INSTANCE=) is not read",
+            ));
+        }
+        let name = keyword.required("PART")?;
+        let Some(&part) = self.part_names.get(&name) else {
+            return Err(Error::malformed("the name of a part that is defined before", excerpt(&name)));
+        };
+        if self.instances.len() >= MOST_INSTANCES {
+            return Err(Error::limit("number of instances", MOST_INSTANCES));
+        }
+        if let Some(name) = keyword.label("NAME")? {
+            self.scopes.insert(name, scope(self.instances.len()));
+        }
+        let (own, motion) = (Blocks::default(), Affine::IDENTITY);
+        self.instances.push(Instance { part, own, motion, place: place.clone() });
+        self.level = Level::Instance;
+        self.frame = Affine::IDENTITY;
+        self.open = Open::Motion(Vec::new());
+        Ok(())
+    }
+
+    fn leave(&mut self, level: Level, expected: &str) -> Result<()> {
+        if self.level != level {
+            return Err(unbalanced(expected));
+        }
+        self.level = Level::Outside;
+        self.frame = Affine::IDENTITY;
+        Ok(())
+    }
+
+    /// The deck has ended: yields what waited for the instances.
+    pub(super) fn finish(mut self) -> Result<()> {
+        self.close()?;
+        let begun = match self.level {
+            Level::Part => self.parts.last().map(|part| (&part.place, "*END PART")),
+            Level::Instance => self.instances.last().map(|instance| (&instance.place, "*END INSTANCE")),
+            Level::Outside => self.assembly.as_ref().map(|place| (place, "*END ASSEMBLY")),
+        };
+        if let Some((place, end)) = begun {
+            return Err(place.of(Error::malformed(format!("{end} after this line"), "the end of the file")));
+        }
+        let nothing = Blocks::default();
+        let mut copies = Vec::new();
+        if self.instances.is_empty() {
+            copies.extend(self.parts.iter().map(|part| (&part.blocks, &nothing, Affine::IDENTITY)));
+        }
+        for Instance { part, own, motion, .. } in &self.instances {
+            copies.push((&self.parts[*part].blocks, own, *motion));
+        }
+        for (number, (blocks, own, motion)) in copies.into_iter().enumerate() {
+            self.found |= !(blocks.is_empty() && own.is_empty());
+            blocks.yield_to(self.out, scope(number), motion, None)?;
+            own.yield_to(self.out, scope(number), motion, None)?;
+        }
+        self.found |= !self.outside.is_empty();
+        let scopes = Arc::new(self.scopes);
+        let instances = Some(&scopes).filter(|scopes| !scopes.is_empty());
+        self.outside.yield_to(self.out, 0, Affine::IDENTITY, instances)?;
+        if !self.found {
+            let error = Error::malformed("a mesh", "a deck that has no *NODE data");
+            return Err(error.in_file(self.input.source.path()));
+        }
+        Ok(())
+    }
+}
+
+fn unbalanced(expected: &str) -> Error {
+    Error::malformed(expected, "none")
+}
+
+/// The coordinate system of a `*NODE` line.
+fn system(keyword: &Keyword) -> Result<System> {
+    match keyword.label("SYSTEM")? {
+        None => Ok(System::Rectangular),
+        Some(name) => System::named(&name).ok_or_else(|| {
+            Error::malformed("SYSTEM=R, SYSTEM=C or SYSTEM=S", format!("SYSTEM={}", plain(&name)))
+        }),
+    }
+}
