@@ -11,6 +11,7 @@ mod gmsh;
 pub(crate) mod reading;
 mod sink;
 pub mod text;
+mod vtk;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -87,7 +88,7 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh];
+pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &vtk::Legacy, &vtk::Vtu];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
