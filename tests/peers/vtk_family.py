@@ -1,6 +1,7 @@
 """Writes one mesh of every VTK cell type in every encoding that VTK's and meshio's own writers know.
 
-    python3 tests/peers/vtk_family.py FOLDER
+    python3 tests/peers/vtk_family.py FOLDER          all of them (hundreds)
+    python3 tests/peers/vtk_family.py FOLDER small    the few small ones of tests/meshes/vtk
 
 The folder then has the files and `expected.jsonl`: for each file the number of points, of measured cells by shape, of
 counted cells, and a checksum of the corners. Coordinates are multiples of 1/8, so that no encoding rounds them.
@@ -164,6 +165,29 @@ def write_vtu(grid, name, facts, mode, compressor, wide, big, base64=True, block
     note(name, facts)
 
 
+def finish():
+    manifest.close()
+    print(sum(1 for _ in open(OUT / "expected.jsonl")), "files")
+    sys.exit()
+
+
+if "small" in sys.argv[2:]:
+    points, cells = make(ALL + [(42, 4, None)], 1)
+    here, grid = expected(points, cells), grid_of(points, cells)
+    write_legacy(grid, "all_42_ascii.vtk", here, 42, False)
+    write_legacy(grid, "all_51_binary.vtk", here, 51, True)
+    write_vtu(grid, "all_raw_lz4.vtu", here, "appended", "lz4", True, False, False)
+    points, cells = make(LINEAR, 2)
+    here, grid = expected(points, cells), grid_of(points, cells, vtk.VTK_FLOAT)
+    write_legacy(grid, "linear_42_binary.vtk", here, 42, True)
+    write_legacy(grid, "linear_51_ascii.vtk", here, 51, False)
+    write_vtu(grid, "linear_ascii.vtu", here, "ascii", "none", False, False)
+    write_vtu(grid, "linear_inline_none.vtu", here, "binary", "none", False, True)
+    write_vtu(grid, "linear_inline_lzma.vtu", here, "binary", "lzma", True, False, block=256)
+    write_vtu(grid, "linear_base64_zlib.vtu", here, "appended", "zlib", False, True, True, block=256)
+    write_vtu(grid, "linear_raw_none.vtu", here, "appended", "none", True, False, False)
+    finish()
+
 everything = make(ALL + [(42, 4, None)], 3)
 facts = expected(*everything)
 linear = make(LINEAR, 9)
@@ -226,5 +250,4 @@ for name, kind, options in (
 ):
     meshio.write(OUT / name, mesh, file_format=kind, **options)
     note(name, dict(plain, checksum_of_turned_wedges=flipped["checksum"]))
-manifest.close()
-print(sum(1 for _ in open(OUT / "expected.jsonl")), "files")
+finish()

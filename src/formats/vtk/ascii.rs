@@ -23,12 +23,12 @@ pub fn unpack(
     let at = out.len();
     let most = count.unwrap_or(u64::MAX);
     let end = match number {
-        Number::F32 => run(input, range, most, "a real number", out, |token| {
+        Number::F32 => run(input, range, most, "a coordinate", out, |token| {
             let value = fast_float2::parse::<f32, _>(token).ok();
             value.or_else(|| text::real(token).map(|v| v as f32)).map(f32::to_le_bytes)
         }),
         Number::F64 => {
-            run(input, range, most, "a real number", out, |token| text::real(token).map(f64::to_le_bytes))
+            run(input, range, most, "a coordinate", out, |token| text::real(token).map(f64::to_le_bytes))
         }
         Number::U8 => run(input, range, most, "a cell type (0 to 255)", out, |token| {
             text::integer(token).and_then(|v| u8::try_from(v).ok()).map(u8::to_le_bytes)
@@ -65,7 +65,11 @@ fn run<const N: usize>(
         }
         match convert(token) {
             Some(bytes) => buffer.extend_from_slice(&bytes),
-            None => return Err(input.source.malformed_text(at, what)),
+            None => {
+                let number = most - left + 1;
+                let of = if most == u64::MAX { String::new() } else { format!(" of {most}") };
+                return Err(input.source.malformed_text(at, format!("{what} as number {number}{of}")));
+            }
         }
         if buffer.len() >= 1 << 16 {
             out.write(&buffer)?;

@@ -134,9 +134,8 @@ fn nodes_of_order(shape: Shape, n: usize) -> usize {
 /// The type of the cell `cell` of type `code` with `nodes` nodes.
 pub fn find(code: u64, nodes: u64, cell: u64) -> Result<&'static Arc<ElementType>> {
     let known = usize::try_from(code).ok().and_then(|code| CODES.get(code));
-    let fits = known.and_then(|code| {
-        code.exact.iter().find(|kind| kind.nodes as u64 == nodes).or(code.other.as_ref())
-    });
+    let fits = known
+        .and_then(|code| code.exact.iter().find(|kind| kind.nodes as u64 == nodes).or(code.other.as_ref()));
     fits.ok_or_else(|| unfit(known, code, nodes, cell))
 }
 

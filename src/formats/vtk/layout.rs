@@ -98,7 +98,8 @@ pub fn walk_counted(file: &Source, lists: &Array, cells: u64) -> Result<Vec<(u64
             starts.push((cell, at));
         }
         if at >= lists.len() {
-            let error = Error::malformed(format!("the list of cell {cell} of {cells}"), "the end of the lists");
+            let error =
+                Error::malformed(format!("the list of cell {cell} of {cells}"), "the end of the lists");
             return Err(file.place(error, lists.spot(at)));
         }
         let nodes = reader.get(at..at + 1, lists.len())[0];
@@ -163,7 +164,11 @@ impl Cells {
             ends.integers(self.count.saturating_sub(1)..self.count, &mut last);
             let last = last.first().copied().unwrap_or(0);
             if last != self.connectivity.len() {
-                return wrong("entries in the connectivity, as the last offset says", last, self.connectivity.len());
+                return wrong(
+                    "entries in the connectivity, as the last offset says",
+                    last,
+                    self.connectivity.len(),
+                );
             }
         }
         Ok(())

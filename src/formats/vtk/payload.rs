@@ -86,7 +86,9 @@ impl<'i> Bytes<'i> {
             let had = out.len();
             match &mut self.base64 {
                 None => {
-                    out.extend_from_slice(&self.source.window(self.at..self.at.saturating_add(left.min(STEP))));
+                    out.extend_from_slice(
+                        &self.source.window(self.at..self.at.saturating_add(left.min(STEP))),
+                    );
                     self.at += (out.len() - had) as u64;
                 }
                 Some(base64) => {
@@ -153,8 +155,7 @@ impl Base64 {
         let mut rest = &self.carry[..whole];
         while !rest.is_empty() {
             // Padding ends a run; another may follow.
-            let (run, next) =
-                rest.split_at(memchr::memchr(b'=', rest).map_or(rest.len(), |k| k / 4 * 4 + 4));
+            let (run, next) = rest.split_at(memchr::memchr(b'=', rest).map_or(rest.len(), |k| k / 4 * 4 + 4));
             let done = base64_simd::STANDARD.decode_append(run, &mut self.decoded);
             done.map_err(|_| Error::malformed("base64 text", crate::error::excerpt(run)))?;
             rest = next;

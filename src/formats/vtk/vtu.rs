@@ -119,9 +119,12 @@ fn read_tags(input: &Input) -> Result<File> {
             continue;
         };
         match (tag.name(), tag.closes) {
-            ("VTKFile", true) => return Ok(file.take().filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag))?),
+            ("VTKFile", true) => {
+                return Ok(file.take().filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag))?);
+            }
             ("Piece", false) if piece.is_none() => {
-                let (points, cells) = (count(input, &tag, "NumberOfPoints")?, count(input, &tag, "NumberOfCells")?);
+                let (points, cells) =
+                    (count(input, &tag, "NumberOfPoints")?, count(input, &tag, "NumberOfCells")?);
                 let new = Piece { at: tag.at, points, cells, arrays: [const { None }; 4] };
                 if tag.is_empty { known.pieces.extend(new.checked(input)?) } else { piece = Some(new) }
             }
@@ -130,7 +133,9 @@ fn read_tags(input: &Input) -> Result<File> {
                     known.pieces.extend(piece.checked(input)?);
                 }
             }
-            ("Points" | "Cells", closes) => section = (!closes && !tag.is_empty).then(|| tag.name() == "Points"),
+            ("Points" | "Cells", closes) => {
+                section = (!closes && !tag.is_empty).then(|| tag.name() == "Points")
+            }
             ("DataArray", false) => {
                 if let (Some(piece), Some(is_points)) = (&mut piece, section) {
                     piece.take_array(input, &tag, is_points)?;
@@ -159,10 +164,14 @@ fn read_head(input: &Input, tag: &Tag) -> Result<File> {
     match tag.attribute(source, "type")?.as_deref() {
         Some("UnstructuredGrid") => {}
         Some("PUnstructuredGrid") => {
-            return Err(refuse("this file names its pieces by reference: score the pieces (.vtu) instead".into()));
+            return Err(refuse(
+                "this file names its pieces by reference: score the pieces (.vtu) instead".into(),
+            ));
         }
         Some(other) => {
-            return Err(refuse(format!("a VTK file of the type {other} is not read: only UnstructuredGrid is")));
+            return Err(refuse(format!(
+                "a VTK file of the type {other} is not read: only UnstructuredGrid is"
+            )));
         }
         None => return Err(source.malformed_text(tag.at, "the attribute type")),
     }
@@ -178,7 +187,9 @@ fn read_head(input: &Input, tag: &Tag) -> Result<File> {
     };
     let compressor = match tag.attribute(source, "compressor")?.as_deref() {
         None | Some("") => None,
-        Some(name) => Some(Compressor::find(name).ok_or_else(|| refuse(format!("unknown compressor {name}")))?),
+        Some(name) => {
+            Some(Compressor::find(name).ok_or_else(|| refuse(format!("unknown compressor {name}")))?)
+        }
     };
     Ok(File { header: HeaderType { width, endian }, compressor, pieces: Vec::new(), appended: None })
 }
@@ -272,7 +283,8 @@ impl Piece {
     }
 
     fn unpack(&self, input: &Input, file: &File, out: &mut Unpacked<'_>) -> Result<Grid> {
-        let nothing = Stored { in_scratch: false, at: 0, number: Number::U8, endian: Endian::Little, count: 0 };
+        let nothing =
+            Stored { in_scratch: false, at: 0, number: Number::U8, endian: Endian::Little, count: 0 };
         let mut arrays = [nothing; 4];
         for (role, stored) in ROLES.into_iter().zip(&mut arrays) {
             let count = match role {
