@@ -281,7 +281,7 @@ fn what_is_wrong_with_a_legacy_file_is_said() {
         (
             "1 2 3 4",
             "1 2 3 -4",
-            "line 12: expected a point's number (0 to 4294967295) as number 8 of 8, found \"-4\"",
+            "line 13: expected a point's number (0 to 4294967295) as number 8 of 8, found \"-4\"",
         ),
         ("1 2 3 4", "1 2 3 5", "element 1 names node 5"),
         ("CELL_TYPES 2\n10\n10", "CELL_TYPES 1\n10", "expected 2 cell types, one for each cell, found 1"),
