@@ -13,9 +13,12 @@ const RING: &[u8] = &[0, 1, 2, 3, 4, 5, 6, 7];
 /// Corners in tensor order: x fastest, then y, then z.
 const TENSOR: &[u8] = &[0, 1, 3, 2, 4, 5, 7, 6];
 
-/// Cells that are measured: code, name, shape, corner order, numbers of nodes with the order that each means.
+/// Numbers of nodes, each with the order that it means.
+type Sizes = &'static [(usize, u8)];
+
+/// Cells that are measured: code, name, shape, corner order, sizes.
 #[rustfmt::skip]
-static MEASURED: &[(u8, &str, Shape, &[u8], &[(usize, u8)])] = &[
+static MEASURED: &[(u8, &str, Shape, &[u8], Sizes)] = &[
     (5, "VTK_TRIANGLE", Shape::Triangle, RING, &[(3, 1)]),
     (7, "VTK_POLYGON", Shape::Triangle, RING, &[(3, 1)]),
     (7, "VTK_POLYGON", Shape::Quadrilateral, RING, &[(4, 1)]),
@@ -149,7 +152,7 @@ fn unfit(known: Option<&Code>, code: u64, nodes: u64, cell: u64) -> Error {
     };
     let name = &first.name;
     if ANY_ORDER.iter().any(|row| u64::from(row.0) == code) {
-        let least = first.nodes.max(1);
+        let least = known.into_iter().flat_map(|code| &code.exact).map(|kind| kind.nodes).min().unwrap_or(1);
         return Error::unsupported(format!(
             "cell {cell} is a {name} with {nodes} nodes: only cells of one order from 1 ({least} nodes) to {MAX_ORDER} are read"
         ));

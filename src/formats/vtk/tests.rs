@@ -1,3 +1,5 @@
+//! Real files, files by hand, broken files; and, where there is a Python with VTK, whatever VTK and meshio write.
+
 use std::path::{Path, PathBuf};
 
 use super::{Legacy, Vtu};
@@ -15,6 +17,11 @@ fn own() -> Vec<PathBuf> {
     files.sort();
     assert!(files.len() >= 8, "{files:?}");
     files
+}
+
+#[expect(clippy::disallowed_methods, reason = "the test's own small files")]
+fn bytes_of(path: &Path) -> Vec<u8> {
+    std::fs::read(path).expect("a file of the test")
 }
 
 fn read_any(path: &Path) -> Result<Mesh> {
@@ -49,7 +56,7 @@ fn checksum(mesh: &Mesh) -> f64 {
 
 /// Holds the files of a folder against its `expected.jsonl`; gives their number.
 fn check_folder(folder: &Path) -> usize {
-    let expected = std::fs::read_to_string(folder.join("expected.jsonl")).expect("expected.jsonl");
+    let expected = String::from_utf8(bytes_of(&folder.join("expected.jsonl"))).expect("UTF-8");
     let mut wrong = Vec::new();
     for line in expected.lines() {
         let row: serde_json::Value = serde_json::from_str(line).expect("JSON");
@@ -98,17 +105,19 @@ fn own_files_are_read() {
     assert_eq!(check_folder(&folder), own().len());
 }
 
+type Shapes = &'static [(&'static str, usize)];
+
 #[test]
 fn corpus_files_have_the_counts_of_other_readers() {
     let Some(corpus) = std::env::var_os("MESHGAUGE_CORPUS") else {
         eprintln!("skipped: MESHGAUGE_CORPUS is not set");
         return;
     };
-    let mixed: &[_] = &[("triangle", 28), ("quadrilateral", 36), ("wedge", 28), ("hexahedron", 8)];
-    let quads: &[_] = &[("quadrilateral", 9)];
-    let hexahedron: &[_] = &[("hexahedron", 1)];
+    let mixed: Shapes = &[("triangle", 28), ("quadrilateral", 36), ("wedge", 28), ("hexahedron", 8)];
+    let quads: Shapes = &[("quadrilateral", 9)];
+    let hexahedron: Shapes = &[("hexahedron", 1)];
     // File, points, measured cells by shape, counted cells.
-    let rows: &[(&str, u64, &[(&str, usize)], u64)] = &[
+    let rows: &[(&str, u64, Shapes, u64)] = &[
         ("vtk/gmsh_mixed_wedge.vtk", 54, mixed, 0),
         ("vtk/meshio_mixed_wedge_51.vtk", 54, mixed, 0),
         ("vtk/mfem_beam-wedge.vtk", 27, &[("wedge", 8)], 0),
@@ -178,7 +187,7 @@ fn random(state: &mut u64) -> u64 {
 #[test]
 fn a_file_that_ends_too_early_is_an_error() {
     for file in own() {
-        let bytes = std::fs::read(&file).expect("own file");
+        let bytes = bytes_of(&file);
         let format: &dyn Format = if file.extension().is_some_and(|e| e == "vtk") { &Legacy } else { &Vtu };
         // A number that lost its last digit is still a number: cut before the last word.
         let end = bytes.trim_ascii_end();
@@ -200,7 +209,7 @@ fn a_file_that_ends_too_early_is_an_error() {
 fn a_file_with_flipped_bytes_is_read_or_refused() {
     let mut state = 0x2007_0301;
     for file in own() {
-        let bytes = std::fs::read(&file).expect("own file");
+        let bytes = bytes_of(&file);
         let format: &dyn Format = if file.extension().is_some_and(|e| e == "vtk") { &Legacy } else { &Vtu };
         for _ in 0..200 {
             let mut broken = bytes.clone();

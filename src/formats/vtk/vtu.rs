@@ -120,7 +120,7 @@ fn read_tags(input: &Input) -> Result<File> {
         };
         match (tag.name(), tag.closes) {
             ("VTKFile", true) => {
-                return Ok(file.take().filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag))?);
+                return file.filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag));
             }
             ("Piece", false) if piece.is_none() => {
                 let (points, cells) =
@@ -143,7 +143,7 @@ fn read_tags(input: &Input) -> Result<File> {
             }
             ("AppendedData", false) => {
                 known.appended = Some(read_appended(input, &tag)?);
-                return Ok(file.take().filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag))?);
+                return file.filter(|_| piece.is_none()).ok_or_else(|| unclosed(input, &tag));
             }
             _ => {}
         }
@@ -241,10 +241,10 @@ impl Piece {
     /// Keeps what the tag of an array says, if it is one that matters.
     fn take_array(&mut self, input: &Input, tag: &Tag, is_points: bool) -> Result<()> {
         let source = &input.source;
-        let name = tag.attribute(source, "Name")?.unwrap_or_default();
         let role = if is_points {
             Role::Coordinate
         } else {
+            let name = tag.attribute(source, "Name")?.unwrap_or_default();
             match ROLES.iter().find(|role| role.name() == name) {
                 Some(role) => *role,
                 None => return Ok(()),
