@@ -12,6 +12,7 @@ mod gmsh;
 pub(crate) mod reading;
 mod sink;
 pub mod text;
+mod vtk;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -88,7 +89,7 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus];
+pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {

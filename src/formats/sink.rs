@@ -103,7 +103,7 @@ impl<'a> ElementSink<'a> {
         match &kind.class {
             Class::Measured { shape, corners, .. } => self.measured(label, *shape, corners, ids),
             Class::Counted(_) => {
-                ids.iter().filter_map(|id| self.nodes.row(*id)).for_each(|row| self.nodes.mark_used(row));
+                self.mark_used(ids);
                 Ok(())
             }
         }
@@ -120,6 +120,12 @@ impl<'a> ElementSink<'a> {
                 });
         }
         self.ledger.types[self.types[self.current].1].count += 1;
+    }
+
+    /// Notes that nodes are used: those of a long element that is not measured, whose first nodes came with
+    /// [`Self::element`].
+    pub fn mark_used(&mut self, ids: &[u64]) {
+        ids.iter().filter_map(|id| self.nodes.row(*id)).for_each(|row| self.nodes.mark_used(row));
     }
 
     /// Counts elements of a type that is not measured, where their nodes are not known.

@@ -1,0 +1,277 @@
+//! Arrays of equal numbers, read through windows wherever they stand.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::error::{Error, Result};
+use crate::formats::binary::Endian;
+use crate::input::{Input, ScratchFile, Source, Spot};
+
+/// How a number is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Number {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+impl Number {
+    /// Number of bytes.
+    pub fn width(self) -> u64 {
+        match self {
+            Number::I8 | Number::U8 => 1,
+            Number::I16 | Number::U16 => 2,
+            Number::I32 | Number::U32 | Number::F32 => 4,
+            Number::I64 | Number::U64 | Number::F64 => 8,
+        }
+    }
+}
+
+/// What an array is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// x, y, z of the points.
+    Coordinate,
+    /// Points of the cells, perhaps with the length of each list before it.
+    Point,
+    /// Where the cells' lists of points end.
+    Offset,
+    /// Types of the cells.
+    Code,
+}
+
+impl Role {
+    /// The array's name in errors, and in VTU files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Coordinate => "points",
+            Role::Point => "connectivity",
+            Role::Offset => "offsets",
+            Role::Code => "types",
+        }
+    }
+
+    /// Whether an array of such numbers can serve.
+    pub fn allows(self, number: Number) -> bool {
+        self == Role::Coordinate || !matches!(number, Number::F32 | Number::F64)
+    }
+
+    /// How text is unpacked. More points than an unsigned number of 32 bits can count are not read in any way.
+    pub fn unpacked(self, declared: Number) -> Number {
+        match self {
+            Role::Coordinate if declared == Number::F32 => Number::F32,
+            Role::Coordinate => Number::F64,
+            Role::Point => Number::U32,
+            Role::Offset => Number::U64,
+            Role::Code => Number::U8,
+        }
+    }
+}
+
+/// Where an array stands, before the scratch file is complete.
+#[derive(Debug, Clone, Copy)]
+pub struct Stored {
+    /// In scratch, not in the mesh file.
+    pub in_scratch: bool,
+    /// Its first byte there.
+    pub at: u64,
+    pub number: Number,
+    pub endian: Endian,
+    pub count: u64,
+}
+
+/// What has been unpacked of a file so far. All of it goes to one scratch file: a mesh may have very many pieces.
+#[derive(Debug)]
+pub struct Unpacked<'i> {
+    input: &'i Input,
+    file: Option<ScratchFile>,
+    len: u64,
+}
+
+impl<'i> Unpacked<'i> {
+    /// Nothing yet.
+    pub fn new(input: &'i Input) -> Self {
+        Self { input, file: None, len: 0 }
+    }
+
+    /// Number of bytes so far: where the next array starts.
+    pub fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Appends bytes.
+    pub fn write(&mut self, bytes: &[u8]) -> Result<()> {
+        self.len += bytes.len() as u64;
+        let limit = self.input.limits.unpacked_bytes;
+        if self.len > limit {
+            return Err(Error::limit("unpacked size", format!("{limit} bytes")));
+        }
+        let file = match &mut self.file {
+            Some(file) => file,
+            None => self.file.insert(self.input.scratch.file()?),
+        };
+        file.write(bytes)
+    }
+
+    /// Ends unpacking: from here on arrays can be read.
+    pub fn finish(self) -> Result<Stores> {
+        let file = Arc::clone(&self.input.source);
+        let scratch = match self.file {
+            Some(scratch) => Arc::new(scratch.into_source(file.path())?),
+            None => Arc::clone(&file),
+        };
+        Ok(Stores { file, scratch })
+    }
+}
+
+/// The mesh file and what was unpacked of it.
+#[derive(Debug)]
+pub struct Stores {
+    /// The mesh file.
+    pub file: Arc<Source>,
+    scratch: Arc<Source>,
+}
+
+impl Stores {
+    /// The array that was stored.
+    pub fn array(&self, stored: Stored, role: Role) -> Result<Array> {
+        let source = if stored.in_scratch { &self.scratch } else { &self.file };
+        check_fits(source, &stored, role)?;
+        Ok(Array { source: Arc::clone(source), stored })
+    }
+}
+
+/// The byte after an array, which must lie in the file.
+pub fn check_fits(source: &Source, stored: &Stored, role: Role) -> Result<u64> {
+    let bytes = stored.count.checked_mul(stored.number.width());
+    match bytes.and_then(|bytes| stored.at.checked_add(bytes)) {
+        Some(end) if end <= source.len() => Ok(end),
+        _ => {
+            let (count, width) = (stored.count, stored.number.width());
+            let what = format!("{count} numbers of {width} bytes ({}) from byte {}", role.name(), stored.at);
+            Err(source.truncated(what))
+        }
+    }
+}
+
+/// An array that lies in a mapped file, every byte of it.
+#[derive(Debug, Clone)]
+pub struct Array {
+    source: Arc<Source>,
+    stored: Stored,
+}
+
+macro_rules! convert {
+    ($type:ty, $to:ty, $endian:expr, $bytes:expr, $out:expr) => {{
+        let (raw, _) = $bytes.as_chunks::<{ size_of::<$type>() }>();
+        match $endian {
+            Endian::Little => $out.extend(raw.iter().map(|raw| <$type>::from_le_bytes(*raw) as $to)),
+            Endian::Big => $out.extend(raw.iter().map(|raw| <$type>::from_be_bytes(*raw) as $to)),
+        }
+    }};
+}
+
+macro_rules! convert_any {
+    ($number:expr, $to:ty, $endian:expr, $bytes:expr, $out:expr) => {
+        match $number {
+            Number::I8 => convert!(i8, $to, $endian, $bytes, $out),
+            Number::U8 => convert!(u8, $to, $endian, $bytes, $out),
+            Number::I16 => convert!(i16, $to, $endian, $bytes, $out),
+            Number::U16 => convert!(u16, $to, $endian, $bytes, $out),
+            Number::I32 => convert!(i32, $to, $endian, $bytes, $out),
+            Number::U32 => convert!(u32, $to, $endian, $bytes, $out),
+            Number::I64 => convert!(i64, $to, $endian, $bytes, $out),
+            Number::U64 => convert!(u64, $to, $endian, $bytes, $out),
+            Number::F32 => convert!(f32, $to, $endian, $bytes, $out),
+            Number::F64 => convert!(f64, $to, $endian, $bytes, $out),
+        }
+    };
+}
+
+impl Array {
+    /// Number of numbers.
+    pub fn len(&self) -> u64 {
+        self.stored.count
+    }
+
+    /// Number of bytes of one number.
+    pub fn width(&self) -> u64 {
+        self.stored.number.width()
+    }
+
+    /// The array without its first number.
+    pub fn without_first(mut self) -> Self {
+        if self.stored.count > 0 {
+            self.stored.count -= 1;
+            self.stored.at += self.width();
+        }
+        self
+    }
+
+    /// Where number `index` stands, if it stands in the mesh file.
+    pub fn spot(&self, index: u64) -> Spot {
+        if self.stored.in_scratch {
+            return Spot::Unknown;
+        }
+        Spot::Binary(self.stored.at + index * self.width())
+    }
+
+    /// Replaces `out` with the whole numbers of `range`. Negative ones come out as numbers over [`i64::MAX`].
+    pub fn integers(&self, range: Range<u64>, out: &mut Vec<u64>) {
+        out.clear();
+        let bytes = self.source.window(self.bytes_of(&range));
+        convert_any!(self.stored.number, u64, self.stored.endian, bytes, out);
+    }
+
+    /// Replaces `out` with the numbers of `range`.
+    pub fn reals(&self, range: Range<u64>, out: &mut Vec<f64>) {
+        out.clear();
+        let bytes = self.source.window(self.bytes_of(&range));
+        convert_any!(self.stored.number, f64, self.stored.endian, bytes, out);
+    }
+
+    fn bytes_of(&self, range: &Range<u64>) -> Range<u64> {
+        let end = range.end.min(self.len());
+        let start = range.start.min(end);
+        self.stored.at + start * self.width()..self.stored.at + end * self.width()
+    }
+}
+
+/// Whole numbers of an array, read ahead in batches.
+#[derive(Debug)]
+pub struct Reader<'a> {
+    array: &'a Array,
+    from: u64,
+    values: Vec<u64>,
+}
+
+impl<'a> Reader<'a> {
+    /// Most numbers that are held at once.
+    pub const BATCH: u64 = 64 << 10;
+
+    /// A reader of `array`.
+    pub fn new(array: &'a Array) -> Self {
+        Self { array, from: 0, values: Vec::new() }
+    }
+
+    /// The numbers of `range`, which lies in the array and is at most [`Self::BATCH`] long. The caller may change them
+    /// as long as it does not ask for the same numbers again. `ahead` is where reading ahead shall stop.
+    #[inline]
+    pub fn get(&mut self, range: Range<u64>, ahead: u64) -> &mut [u64] {
+        debug_assert!(range.end <= self.array.len() && range.end - range.start <= Self::BATCH);
+        if range.start < self.from || range.end > self.from + self.values.len() as u64 {
+            let end = ahead.min(range.start + Self::BATCH).max(range.end);
+            self.array.integers(range.start..end, &mut self.values);
+            self.from = range.start;
+        }
+        let start = (range.start - self.from) as usize;
+        &mut self.values[start..start + (range.end - range.start) as usize]
+    }
+}
