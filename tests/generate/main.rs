@@ -1,6 +1,7 @@
 //! The model problems: their meshes are sound, are the report's, and are written as they were walked.
 
 #![allow(clippy::unwrap_used)]
+#![expect(clippy::disallowed_methods, reason = "the tests' own small files")]
 
 mod files;
 mod published;
