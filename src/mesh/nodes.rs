@@ -58,7 +58,7 @@ pub struct Nodes {
 #[derive(Debug)]
 enum Index {
     /// Number `first + row`.
-    Dense { first: u64 },
+    Dense { first: u64, len: u64 },
     /// Place `number - first` holds row + 1, or 0.
     Table { first: u64, rows: Column<u32> },
     /// Runs sorted by number.
@@ -128,6 +128,9 @@ impl NodesBuilder {
     }
 
     fn add_run(&mut self, run: Run) -> Result<()> {
+        if run.id.checked_add(run.len).is_none() {
+            return Err(Error::malformed(format!("a node number under {}", u64::MAX), run.id.to_string()));
+        }
         if let Some(ids) = &mut self.ids {
             return extend_run(ids, run);
         }
@@ -180,10 +183,10 @@ impl NodesBuilder {
     fn index_runs(&mut self, total: u64) -> Result<Index> {
         let runs = std::mem::take(&mut self.runs);
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
-            return Ok(Index::Dense { first: 0 });
+            return Ok(Index::Dense { first: 0, len: 0 });
         };
         if runs.len() == 1 {
-            return Ok(Index::Dense { first: first.id });
+            return Ok(Index::Dense { first: first.id, len: first.len });
         }
         let (first, places) = (first.id, last.id + last.len - first.id);
         if runs.len() <= 8 || places > SPARSEST_TABLE * total {
@@ -247,12 +250,12 @@ impl Nodes {
     }
 
     /// The row of the node with number `id`.
-    #[inline]
+    #[inline(always)]
     pub fn row(&self, id: u64) -> Option<u32> {
         match &self.index {
-            Index::Dense { first } => {
+            Index::Dense { first, len } => {
                 let row = id.wrapping_sub(*first);
-                (row < self.rows().len() as u64).then_some(row as u32)
+                (row < *len).then_some(row as u32)
             }
             Index::Table { first, rows } => {
                 match rows.rows().get(usize::try_from(id.wrapping_sub(*first)).ok()?) {
@@ -260,6 +263,13 @@ impl Nodes {
                     _ => None,
                 }
             }
+            Index::Runs(_) | Index::Pairs(_) => self.search(id),
+        }
+    }
+
+    /// The row of a number that is not near the others.
+    fn search(&self, id: u64) -> Option<u32> {
+        match &self.index {
             Index::Runs(runs) => {
                 let run = runs[..runs.partition_point(|run| run.id <= id)].last()?;
                 (id - run.id < run.len).then(|| (run.row + (id - run.id)) as u32)
@@ -269,6 +279,7 @@ impl Nodes {
                 let last = pairs[..pairs.partition_point(|pair| pair[0] <= id)].last()?;
                 (last[0] == id).then_some(last[1] as u32)
             }
+            Index::Dense { .. } | Index::Table { .. } => self.row(id),
         }
     }
 
@@ -373,6 +384,14 @@ mod tests {
                 assert_eq!(nodes.row(0), last.get(&0).copied());
             }
         }
+    }
+
+    #[test]
+    fn the_largest_number_does_not_overflow() {
+        let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
+        let mut builder = NodesBuilder::new(&Budget::new(1 << 20), &scratch);
+        assert!(builder.extend(&[u64::MAX], &[[0.0; 3]]).is_err());
+        assert_eq!(table(&[u64::MAX - 1, 1], 1 << 20).row(u64::MAX - 1), Some(0));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The pipeline: the only threads and channels. Bytes go in, a summary comes out.
 //!
-//! [`run`](run) reads from top to bottom. Pieces of nodes are decoded into the node table; pieces of elements into chunks,
+//! `run.rs` reads from top to bottom. Pieces of nodes are decoded into the node table; pieces of elements into chunks,
 //! chunks into statistics, statistics into a summary. What is merged with what depends on positions in the file alone.
 
 mod assemble;
