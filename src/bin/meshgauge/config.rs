@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -206,10 +206,7 @@ impl Config {
     /// Reads the file at `path`, or takes the defaults where none is given.
     pub fn read(path: Option<&Path>) -> anyhow::Result<Self> {
         let Some(path) = path else { return Ok(Config::default()) };
-        let mut text = String::new();
-        File::open(path)
-            .and_then(|file| file.take(LARGEST).read_to_string(&mut text))
-            .map_err(|e| Usage(format!("{}: {e}", path.display())))?;
+        let text = read(path).map_err(|e| Usage(format!("{}: {e}", path.display())))?;
         let config = parse(&text).map_err(|e| Usage(format!("{}: {e}", path.display())))?;
         config.check().with_context(|| path.display().to_string())?;
         Ok(config)
@@ -284,6 +281,12 @@ impl Config {
             progress: None,
         })
     }
+}
+
+fn read(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    io::copy(&mut File::open(path)?.take(LARGEST), &mut bytes)?;
+    String::from_utf8(bytes).map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
 }
 
 /// The configuration in `text`, or what is wrong with it and in which line.

@@ -9,41 +9,20 @@ use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 use meshgauge::formats::FORMATS;
-
-/// Extensions of packed files.
-const PACKED: [&str; 5] = ["gz", "zst", "bz2", "xz", "lz4"];
+use meshgauge::input::mesh_name;
 
 /// What a summary's file name ends with.
 pub const SUFFIX: &str = ".summary.json";
 
 /// Whether the file's name has the extension of a mesh format, packed or not.
 pub fn has_mesh_extension(file_name: &OsStr) -> bool {
-    extension_of_mesh(Path::new(unpacked(file_name))).is_some()
+    stem(file_name) != mesh_name(Path::new(file_name), &[])
 }
 
 /// The file's name without its compression and mesh extensions.
-pub fn stem(file_name: &OsStr) -> &OsStr {
-    let name = Path::new(unpacked(file_name));
-    match extension_of_mesh(name) {
-        Some(_) => name.file_stem().unwrap_or(name.as_os_str()),
-        None => name.as_os_str(),
-    }
-}
-
-/// The name without the extension of a packed file.
-fn unpacked(file_name: &OsStr) -> &OsStr {
-    let path = Path::new(file_name);
-    let packed = path.extension().is_some_and(|e| PACKED.iter().any(|p| e.eq_ignore_ascii_case(p)));
-    if packed { path.file_stem().unwrap_or(file_name) } else { file_name }
-}
-
-fn extension_of_mesh(name: &Path) -> Option<&OsStr> {
-    let extension = name.extension()?;
-    FORMATS
-        .iter()
-        .flat_map(|f| f.extensions())
-        .any(|e| extension.eq_ignore_ascii_case(e))
-        .then_some(extension)
+pub fn stem(file_name: &OsStr) -> OsString {
+    let extensions: Vec<_> = FORMATS.iter().flat_map(|format| format.extensions()).copied().collect();
+    mesh_name(Path::new(file_name), &extensions)
 }
 
 /// The meshes of one folder, to name their summaries so that no two are the same.
@@ -61,7 +40,7 @@ impl Folder {
             return false;
         }
         let stem = stem(file_name);
-        let mut clash = self.take(stem);
+        let mut clash = self.take(&stem);
         if stem != file_name {
             clash |= self.take(file_name);
         }
@@ -82,8 +61,8 @@ impl Folder {
     /// The file name of the summary of a mesh of this folder.
     pub fn summary_name(&self, file_name: &OsStr) -> OsString {
         let stem = stem(file_name);
-        let shared = self.taken.get(stem).is_some_and(|&count| count > 1);
-        let mut name = if shared { file_name } else { stem }.to_owned();
+        let shared = self.taken.get(&stem).is_some_and(|&count| count > 1);
+        let mut name = if shared { file_name.to_owned() } else { stem };
         name.push(SUFFIX);
         name
     }

@@ -157,9 +157,9 @@ mod tests {
     use super::*;
 
     fn text(path: &Path) -> String {
-        let mut text = String::new();
-        File::open(path).and_then(|f| f.take(1 << 20).read_to_string(&mut text)).expect("readable");
-        text
+        let mut bytes = Vec::new();
+        File::open(path).and_then(|file| io::copy(&mut file.take(1 << 20), &mut bytes)).expect("readable");
+        String::from_utf8(bytes).expect("UTF-8")
     }
 
     #[test]
