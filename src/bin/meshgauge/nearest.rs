@@ -1,14 +1,22 @@
 //! "Did you mean": the known name that a mistyped one is nearest to.
 
-/// The name with the fewest edits (insert, delete, replace, swap of neighbours, upper or lower case free), if that is
-/// near enough to be what was meant.
+use std::cmp::Reverse;
+
+/// The name with the fewest edits (insert, delete, replace, swap of neighbours; upper or lower case is free), if that is
+/// near enough to be what was meant. Of several it is the one that begins alike for longest.
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let near_enough = 1 + typed.chars().count() / 3;
+    let typed = typed.to_lowercase();
+    let rate = |name: &str| {
+        let name = name.to_lowercase();
+        let alike = typed.chars().zip(name.chars()).take_while(|(a, b)| a == b).count();
+        (distance(&typed, &name), Reverse(alike))
+    };
     known
         .into_iter()
-        .map(|name| (distance(&typed.to_lowercase(), &name.to_lowercase()), name))
-        .filter(|(edits, _)| *edits <= near_enough)
-        .min_by_key(|(edits, _)| *edits)
+        .map(|name| (rate(name), name))
+        .filter(|((edits, _), _)| *edits <= near_enough)
+        .min_by_key(|(rating, _)| *rating)
         .map(|(_, name)| name)
 }
 
@@ -45,6 +53,7 @@ mod tests {
         assert_eq!(nearest("setle", known), Some("settle"));
         assert_eq!(nearest("scna", known), Some("scan"));
         assert_eq!(nearest("m31", known), Some("M31"));
+        assert_eq!(nearest("M3", ["M13", "M31"]), Some("M31"));
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub struct Args {
 const AFTER: &str = "\
 Signals: SIGTERM and SIGINT stop the daemon after the meshes in work (exit status 0); a second one stops it now.
 
-Exit status with --once, the highest over all meshes:
+Exit status with --once, the highest over the meshes of this run:
   0  all were scored; a warning is fine
   1  the verdict of a mesh is fail
   2  wrong usage or configuration

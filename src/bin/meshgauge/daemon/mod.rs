@@ -7,6 +7,7 @@ mod fields;
 mod hints;
 mod ledger;
 mod log;
+mod mount;
 mod pool;
 mod process;
 mod protocol;
@@ -79,6 +80,9 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
     if !places.drop.is_dir() {
         let drop = places.drop.display();
         return Err(Usage(format!("{drop}: expected a folder that meshes are dropped into")).into());
+    }
+    if let Some(advice) = mount::advice(&places.drop, config.watch.settle.0) {
+        tracing::warn!("{}: {advice}", places.drop.display());
     }
     let stop = signals::stop_requests().context("signals")?;
     record::make_folders([&places.results, &places.state])?;
