@@ -105,6 +105,15 @@ impl Ledger {
         })
     }
 
+    /// Where in the log to look for the outcome of an open claim of this version.
+    pub fn claim(&self, path: &Path, identity: &Identity) -> Option<u64> {
+        let entry = self.entries.get(path).filter(|entry| entry.identity.same_version(identity))?;
+        match entry.stage {
+            Stage::Claimed { log } => Some(log),
+            _ => None,
+        }
+    }
+
     /// Puts down how far a version has come. An earlier summary stays known.
     pub fn note(&mut self, path: &Path, identity: Identity, stage: Stage) -> anyhow::Result<()> {
         let before = self.entries.get(path);

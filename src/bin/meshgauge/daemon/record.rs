@@ -84,9 +84,11 @@ impl Record {
         Ok(())
     }
 
-    /// A worker is about to get it.
+    /// A worker is about to get it. A claim that is made again keeps its place in the log: an earlier process may have
+    /// written the result there.
     pub fn claimed(&mut self, path: &Path, identity: &Identity, announced: bool) -> anyhow::Result<()> {
-        self.ledger.note(path, *identity, Stage::Claimed { log: self.log.length() })?;
+        let log = self.ledger.claim(path, identity).unwrap_or(self.log.length());
+        self.ledger.note(path, *identity, Stage::Claimed { log })?;
         if announced { self.log_claim(path, identity) } else { Ok(()) }
     }
 
@@ -252,4 +254,30 @@ fn file_name(path: &Path) -> &OsStr {
 
 fn parent(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn open(folder: &Path) -> Record {
+        let (log, _) = Log::open(&folder.join("log.jsonl")).expect("a log");
+        Record::new(log, Ledger::open(folder).expect("a ledger"), folder, true).expect("a record")
+    }
+
+    #[test]
+    fn a_result_that_was_logged_is_known_after_any_number_of_crashes() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mesh, identity) = (Path::new("a.msh"), Identity::default());
+        let mut record = open(folder.path());
+        record.claimed(mesh, &identity, true).expect("claimed");
+        let line = Event::info("mesh.scored").mesh(mesh).with("id", id(mesh, &identity));
+        record.event(line).expect("logged");
+        for _ in 0..3 {
+            drop(record);
+            record = open(folder.path());
+            assert!(record.logged.contains(&id(mesh, &identity)));
+            record.claimed(mesh, &identity, true).expect("claimed again");
+        }
+    }
 }
