@@ -2,6 +2,7 @@
 
 mod cli;
 mod config;
+mod config_file;
 mod daemon;
 mod exit;
 mod folder;

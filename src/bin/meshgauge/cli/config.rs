@@ -3,7 +3,8 @@
 use std::io::{Write, stdout};
 
 use super::ConfigFile;
-use crate::config::{Config, DOCUMENTED};
+use crate::config::Config;
+use crate::config_file::DOCUMENTED;
 use crate::exit::Status;
 
 /// Print a configuration file with every setting and its default, or check one.
