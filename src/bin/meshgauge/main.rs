@@ -1,2 +1,37 @@
-//! The program.
-fn main() {}
+//! The program: scores meshes on the command line, and as they land in a folder.
+
+mod cli;
+mod config;
+mod config_file;
+mod daemon;
+mod exit;
+mod folder;
+mod identity;
+mod logging;
+mod names;
+mod nearest;
+mod path_text;
+mod progress;
+mod publish;
+mod quantity;
+mod selection;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::exit::Status;
+
+fn main() -> ExitCode {
+    let cli = cli::Cli::parse();
+    match cli::run(cli) {
+        Ok(status) => status.into(),
+        Err(failure) => {
+            let status = Status::of_failure(&failure);
+            if status != Status::Fine {
+                eprintln!("meshgauge: {failure:#}");
+            }
+            status.into()
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The command line: one file a subcommand.
+
+mod completions;
+mod config;
+mod formats;
+mod generate;
+mod man;
+mod measures;
+mod output;
+mod score;
+mod watch;
+mod worker;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use crate::config::Config;
+use crate::exit::Status;
+use crate::logging;
+
+/// Finite-element mesh quality: the twelve measures of the NPL report, for meshes of any size.
+///
+/// `score` measures meshes now; `watch` measures each mesh that lands in a folder.
+#[derive(Debug, Parser)]
+#[command(name = "meshgauge", version, max_term_width = 100, after_help = EXIT_STATUS)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+
+    /// Say more about what is done, on stderr; twice says still more.
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    verbose: u8,
+}
+
+const EXIT_STATUS: &str = "\
+Exit status:
+  0  fine; a warning is fine
+  1  scored, but a threshold failed
+  2  wrong usage or configuration
+  3  a mesh could not be read
+  4  out of a resource: disk, memory
+With several meshes the others are still scored, and the highest status is returned.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Score(score::Args),
+    Watch(watch::Args),
+    Generate(generate::Args),
+    Formats(formats::Args),
+    Measures(measures::Args),
+    Config(config::Args),
+    Completions(completions::Args),
+    Man(man::Args),
+    #[command(hide = true)]
+    Worker(worker::Args),
+}
+
+/// Where the configuration comes from.
+#[derive(Debug, clap::Args)]
+struct ConfigFile {
+    /// Configuration file; `meshgauge config` prints one with every setting and its default.
+    #[arg(long, value_name = "FILE", env = "MESHGAUGE_CONFIG")]
+    config: Option<PathBuf>,
+}
+
+impl ConfigFile {
+    fn read(&self) -> anyhow::Result<Config> {
+        Config::read(self.config.as_deref())
+    }
+}
+
+/// Does what the command line asks for.
+pub fn run(cli: Cli) -> anyhow::Result<Status> {
+    let start = |config: &Config| logging::start(&config.diagnostics.level, cli.verbose);
+    match cli.command {
+        Command::Score(args) => {
+            let config = args.config()?;
+            start(&config);
+            score::run(&args, &config)
+        }
+        Command::Watch(args) => {
+            let config = args.config()?;
+            start(&config);
+            watch::run(&args, config)
+        }
+        Command::Worker(args) => {
+            start(&Config::default());
+            worker::run(&args)
+        }
+        Command::Generate(args) => generate::run(&args),
+        Command::Formats(args) => formats::run(&args),
+        Command::Measures(args) => measures::run(&args),
+        Command::Config(args) => config::run(&args),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
+    }
+}

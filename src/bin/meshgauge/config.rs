@@ -1,0 +1,276 @@
+//! The configuration: defaults, then the file, then the command line.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::Context;
+use meshgauge::Options;
+use meshgauge::summary::{FailUnder, Judgement};
+use serde::{Deserialize, Serialize};
+
+use crate::config_file;
+use crate::exit::Usage;
+use crate::quantity::{Size, Span};
+use crate::selection;
+
+/// Every setting. `config/meshgauge.toml` says what each means.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Config {
+    /// How a mesh is scored.
+    pub score: Score,
+    /// What makes a mesh fail.
+    pub verdict: Verdict,
+    /// Limits that guard the machine.
+    pub limits: Limits,
+    /// The daemon.
+    pub watch: Watch,
+    /// The processes that score for the daemon.
+    pub worker: Worker,
+    /// What the program says about itself.
+    pub diagnostics: Diagnostics,
+}
+
+/// `[score]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Score {
+    pub threads: usize,
+    pub memory: Size,
+    pub scratch: PathBuf,
+    pub scratch_limit: Size,
+    pub measures: String,
+    pub allow_missing_nodes: bool,
+    pub run_info: bool,
+}
+
+/// `[verdict]`
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Verdict {
+    pub fail_under: BTreeMap<String, f64>,
+}
+
+/// `[limits]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Limits {
+    pub file_bytes: Size,
+    pub unpacked_bytes: Size,
+    pub unpacked_ratio: u64,
+    pub window_bytes: Size,
+    pub line_bytes: Size,
+    pub include_depth: usize,
+    pub include_count: usize,
+}
+
+/// `[watch]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Watch {
+    pub drop: PathBuf,
+    pub results: PathBuf,
+    pub log: PathBuf,
+    pub state: PathBuf,
+    pub settle: Span,
+    pub scan: Span,
+    pub events: bool,
+    pub depth: usize,
+    pub symlinks: Symlinks,
+    pub ignore: Vec<String>,
+    pub patience: Span,
+    pub drain: Span,
+}
+
+/// Which symbolic links to files are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Symlinks {
+    /// Those that end inside the folder.
+    Inside,
+    /// All.
+    All,
+    /// None.
+    None,
+}
+
+/// `[worker]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Worker {
+    pub count: usize,
+    pub time: Span,
+    pub memory: Size,
+    pub retry: Span,
+}
+
+/// `[diagnostics]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Diagnostics {
+    pub level: String,
+}
+
+impl Default for Score {
+    fn default() -> Self {
+        Self {
+            threads: 0,
+            memory: Size(256 << 20),
+            scratch: PathBuf::new(),
+            scratch_limit: Size(4 << 40),
+            measures: "all".into(),
+            allow_missing_nodes: false,
+            run_info: true,
+        }
+    }
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        let limits = meshgauge::input::Limits::default();
+        Self {
+            file_bytes: Size(limits.file_bytes),
+            unpacked_bytes: Size(limits.unpacked_bytes),
+            unpacked_ratio: limits.unpacked_ratio,
+            window_bytes: Size(limits.window_bytes),
+            line_bytes: Size(limits.line_bytes as u64),
+            include_depth: limits.include_depth,
+            include_count: limits.include_count,
+        }
+    }
+}
+
+impl Default for Watch {
+    fn default() -> Self {
+        let still_written = [
+            ".*",
+            "*~",
+            "*.tmp",
+            "*.part",
+            "*.partial",
+            "*.filepart",
+            "*.inprogress",
+            "*.crdownload",
+            "*.PROCESSING",
+        ];
+        Self {
+            drop: "drop".into(),
+            results: "results".into(),
+            log: PathBuf::new(),
+            state: PathBuf::new(),
+            settle: Span(Duration::from_secs(2)),
+            scan: Span(Duration::from_secs(15)),
+            events: true,
+            depth: 32,
+            symlinks: Symlinks::Inside,
+            ignore: still_written.map(String::from).to_vec(),
+            patience: Span(Duration::from_secs(60)),
+            drain: Span(Duration::from_secs(60)),
+        }
+    }
+}
+
+impl Default for Worker {
+    fn default() -> Self {
+        Self {
+            count: 2,
+            time: Span(Duration::from_secs(3600)),
+            memory: Size(1 << 30),
+            retry: Span(Duration::from_secs(300)),
+        }
+    }
+}
+
+impl Default for Diagnostics {
+    fn default() -> Self {
+        Self { level: "warn".into() }
+    }
+}
+
+impl Config {
+    /// Reads the file at `path`, or takes the defaults where none is given.
+    pub fn read(path: Option<&Path>) -> anyhow::Result<Self> {
+        let Some(path) = path else { return Ok(Config::default()) };
+        let text = config_file::read(path).map_err(|e| Usage(format!("{}: {e}", path.display())))?;
+        let config = config_file::parse(&text).map_err(|e| Usage(format!("{}: {e}", path.display())))?;
+        config.check().with_context(|| path.display().to_string())?;
+        Ok(config)
+    }
+
+    /// Says what makes no sense in settings that are well-formed each on its own.
+    pub fn check(&self) -> Result<(), Usage> {
+        selection::measures(&self.score.measures)?;
+        for measure in self.verdict.fail_under.keys() {
+            selection::known(measure)?;
+        }
+        let levels = ["error", "warn", "info", "debug", "trace"];
+        let wrong = [
+            (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
+            (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),
+            (self.watch.depth == 0, "watch.depth must be at least 1".to_owned()),
+            (!(1..=1024).contains(&self.worker.count), "worker.count must be from 1 to 1024".to_owned()),
+            (self.worker.time.0.is_zero(), "worker.time must be longer than 0s".to_owned()),
+            (
+                self.worker.memory <= self.score.memory,
+                format!(
+                    "worker.memory ({}) must be over score.memory ({})",
+                    self.worker.memory, self.score.memory
+                ),
+            ),
+            (
+                !levels.contains(&self.diagnostics.level.as_str()),
+                format!("diagnostics.level must be one of {}", levels.join(", ")),
+            ),
+        ];
+        match wrong.into_iter().find(|(wrong, _)| *wrong) {
+            Some((_, why)) => Err(Usage(why)),
+            None => Ok(()),
+        }
+    }
+
+    /// The settings as the library takes them.
+    pub fn options(&self) -> Result<Options, Usage> {
+        let defaults = Options::default();
+        let Config { score, limits, .. } = self;
+        Ok(Options {
+            threads: if score.threads == 0 { defaults.threads } else { score.threads },
+            memory: score.memory.0,
+            scratch: if score.scratch.as_os_str().is_empty() {
+                defaults.scratch
+            } else {
+                score.scratch.clone()
+            },
+            scratch_bytes: score.scratch_limit.0,
+            format: None,
+            measures: selection::measures(&score.measures)?,
+            allow_missing_nodes: score.allow_missing_nodes,
+            limits: meshgauge::input::Limits {
+                file_bytes: limits.file_bytes.0,
+                unpacked_bytes: limits.unpacked_bytes.0,
+                unpacked_ratio: limits.unpacked_ratio,
+                window_bytes: limits.window_bytes.0,
+                line_bytes: usize::try_from(limits.line_bytes.0).unwrap_or(usize::MAX),
+                include_depth: limits.include_depth,
+                include_count: limits.include_count,
+            },
+            judgement: Judgement {
+                fail_under: self
+                    .verdict
+                    .fail_under
+                    .iter()
+                    .map(|(measure, &value)| FailUnder { measure: measure.clone(), value })
+                    .collect(),
+                ..Judgement::default()
+            },
+            run_info: score.run_info,
+            progress: None,
+        })
+    }
+}

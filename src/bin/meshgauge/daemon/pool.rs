@@ -1,0 +1,190 @@
+//! A fixed number of threads, each with a worker process that it replaces when that dies.
+
+use std::fs::OpenOptions;
+use std::io;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use meshgauge::Summary;
+use rustix::fs::OFlags;
+
+use super::process::{NoAnswer, Process, deadline};
+use super::protocol::{Answer, Failure, FailureKind, Request};
+use crate::config::Config;
+use crate::identity::Identity;
+use crate::path_text::PathText;
+
+/// A mesh to score.
+pub struct Job {
+    /// Its path within the drop.
+    pub path: PathBuf,
+    /// The version that settled.
+    pub identity: Identity,
+}
+
+/// What became of a job.
+pub struct Outcome {
+    /// The mesh's path within the drop.
+    pub path: PathBuf,
+    /// The version that settled.
+    pub identity: Identity,
+    /// What was found.
+    pub result: Found,
+    /// How long it took.
+    pub time: Duration,
+}
+
+/// What was found.
+pub enum Found {
+    /// A summary of the version that settled.
+    Scored(Box<Summary>),
+    /// The reason why there is none.
+    Failed(Failure),
+    /// Another version.
+    Changed,
+    /// Nothing.
+    Gone,
+    /// We had to give up.
+    Abandoned,
+}
+
+/// The threads.
+pub struct Pool {
+    jobs: Sender<Job>,
+    outcomes: Receiver<Outcome>,
+    abandoned: Arc<AtomicBool>,
+}
+
+impl Pool {
+    /// Starts the threads; their processes start with the first mesh.
+    pub fn start(drop: &Path, config: &Config) -> Self {
+        let count = config.worker.count;
+        let (jobs, queue) = bounded::<Job>(count);
+        let (sender, outcomes) = bounded(count);
+        let abandoned = Arc::new(AtomicBool::new(false));
+        for _ in 0..count {
+            let (queue, sender) = (queue.clone(), sender.clone());
+            let mut seat = Seat {
+                drop: drop.to_owned(),
+                config: shared_out(config),
+                process: None,
+                abandoned: Arc::clone(&abandoned),
+            };
+            std::thread::spawn(move || {
+                for job in queue {
+                    let start = Instant::now();
+                    let result = seat.score(&job);
+                    let Job { path, identity } = job;
+                    if sender.send(Outcome { path, identity, result, time: start.elapsed() }).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        Self { jobs, outcomes, abandoned }
+    }
+
+    /// Hands a job over. The caller keeps count: there are never more jobs than threads, so this does not wait.
+    pub fn give(&self, job: Job) -> anyhow::Result<()> {
+        self.jobs.send(job).map_err(|_| anyhow::anyhow!("the threads that mind the workers are gone"))
+    }
+
+    /// Gets what became of the jobs.
+    pub fn outcomes(&self) -> &Receiver<Outcome> {
+        &self.outcomes
+    }
+
+    /// Gives up on all jobs.
+    pub fn abandon(&self) {
+        self.abandoned.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The configuration for one of several workers that share the processors.
+fn shared_out(config: &Config) -> Config {
+    let mut config = config.clone();
+    if config.score.threads == 0 {
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        config.score.threads = (processors / config.worker.count).max(1);
+    }
+    config
+}
+
+/// One thread's place.
+struct Seat {
+    drop: PathBuf,
+    config: Config,
+    process: Option<Process>,
+    abandoned: Arc<AtomicBool>,
+}
+
+impl Seat {
+    fn score(&mut self, job: &Job) -> Found {
+        let path = self.drop.join(&job.path);
+        if let Some(other) = other_version(&path, &job.identity) {
+            return other;
+        }
+        let found = match self.ask(&path) {
+            Ok(Answer::Scored(summary)) => Found::Scored(summary),
+            Ok(Answer::Failed(failure)) => Found::Failed(failure),
+            Err(NoAnswer::Abandoned) => return Found::Abandoned,
+            Err(NoAnswer::TimedOut) => {
+                let reason = format!("it took longer than {}", self.config.worker.time);
+                Found::Failed(Failure::new(FailureKind::Timeout, reason))
+            }
+            Err(NoAnswer::Died(how)) => Found::Failed(Failure::new(FailureKind::WorkerDied, how)),
+        };
+        // Whatever was found is about one version only if it is still that one.
+        other_version(&path, &job.identity).unwrap_or(found)
+    }
+
+    fn ask(&mut self, path: &Path) -> Result<Answer, NoAnswer> {
+        let request = Request { path: PathText::from(path), config: self.config.clone() };
+        let mut line = serde_json::to_vec(&request).map_err(|e| NoAnswer::Died(e.to_string()))?;
+        line.push(b'\n');
+        let mut process = match self.ready(&line) {
+            Ok(process) => process,
+            Err(error) => {
+                let reason = format!("no worker could be started: {error}");
+                return Ok(Answer::Failed(Failure::new(FailureKind::Resource, reason)));
+            }
+        };
+        let abandoned = Arc::clone(&self.abandoned);
+        let answer =
+            process.answer(deadline(self.config.worker.time.0), || abandoned.load(Ordering::Relaxed));
+        if answer.is_ok() {
+            self.process = Some(process);
+        }
+        answer
+    }
+
+    /// A worker that has the request. One that died idle is no mesh's fault and is replaced.
+    fn ready(&mut self, request: &[u8]) -> io::Result<Process> {
+        if let Some(mut process) = self.process.take()
+            && process.is_alive()
+            && process.send(request).is_ok()
+        {
+            return Ok(process);
+        }
+        let mut process = Process::start()?;
+        process.send(request)?;
+        Ok(process)
+    }
+}
+
+/// What stands under the name, if it is not the version that settled.
+fn other_version(path: &Path, identity: &Identity) -> Option<Found> {
+    // A FIFO that took the name must not hold us up.
+    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().cast_signed();
+    match OpenOptions::new().read(true).custom_flags(flags).open(path).and_then(|file| file.metadata()) {
+        Ok(data) if identity.same_version(&Identity::from(&data)) => None,
+        Ok(_) => Some(Found::Changed),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Some(Found::Gone),
+        // The worker will meet the same error and say so.
+        Err(_) => None,
+    }
+}

@@ -1,0 +1,226 @@
+//! Reads a folder through: what stands in it, in the order of the names.
+//!
+//! Files are looked at and not opened, so a FIFO cannot hold us up. Names of files that are still being written are
+//! passed over, as are our own results.
+
+use std::fs::{self, Metadata};
+use std::io;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::path::{Path, PathBuf};
+
+use crate::config::{Symlinks, Watch};
+use crate::identity::Identity;
+
+/// How a folder is read through.
+pub struct Walk {
+    root: PathBuf,
+    depth: usize,
+    symlinks: Symlinks,
+    ignore: Vec<String>,
+    excluded: Vec<PathBuf>,
+}
+
+/// What a folder holds.
+#[derive(Default)]
+pub struct Scan {
+    /// Files by their path within the folder, in the order of the names.
+    pub files: Vec<(PathBuf, Found)>,
+    /// The folder and its sub-folders: device and inode by path within the folder.
+    pub folders: Vec<(PathBuf, (u64, u64))>,
+    /// What could not be looked at.
+    pub problems: Vec<(PathBuf, io::Error)>,
+}
+
+/// What stands under a name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Found {
+    /// A regular file.
+    File(Identity),
+    /// Anything else, in words.
+    Other(&'static str),
+}
+
+impl Walk {
+    /// A walk through `root` by the rules of the configuration.
+    pub fn new(root: &Path, rules: &Watch) -> Self {
+        Self {
+            root: root.to_owned(),
+            depth: rules.depth,
+            symlinks: rules.symlinks,
+            ignore: rules.ignore.clone(),
+            excluded: Vec::new(),
+        }
+    }
+
+    /// Leaves out the file or folder at `path`, whatever name leads to it.
+    pub fn exclude(&mut self, path: &Path) {
+        self.excluded.push(path.to_owned());
+    }
+
+    /// The folder that is walked through.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Reads the folder through.
+    pub fn scan(&self) -> Scan {
+        let excluded: Vec<_> = self
+            .excluded
+            .iter()
+            .filter_map(|path| fs::metadata(path).ok())
+            .map(|data| place(&data))
+            .collect();
+        let mut scan = Scan::default();
+        // Folders that are still to be read, the next one last.
+        let mut pending = vec![(PathBuf::new(), 0)];
+        while let Some((folder, depth)) = pending.pop() {
+            let mut below = Vec::new();
+            if let Err(error) = self.read(&folder, &excluded, &mut scan, &mut below) {
+                scan.problems.push((folder, error));
+                continue;
+            }
+            if depth + 1 < self.depth {
+                below.sort_by(|a, b| b.cmp(a));
+                pending.extend(below.into_iter().map(|path| (path, depth + 1)));
+            } else if !below.is_empty() {
+                let cause = io::Error::other("its sub-folders lie deeper than the limit on depth");
+                scan.problems.push((folder, cause));
+            }
+        }
+        scan.files.sort_by(|a, b| a.0.cmp(&b.0));
+        scan
+    }
+
+    /// Reads one folder: files go to `scan`, its sub-folders to `below`.
+    fn read(
+        &self,
+        folder: &Path,
+        excluded: &[(u64, u64)],
+        scan: &mut Scan,
+        below: &mut Vec<PathBuf>,
+    ) -> io::Result<()> {
+        let here = self.root.join(folder);
+        let data = fs::metadata(&here)?;
+        if excluded.contains(&place(&data)) {
+            return Ok(());
+        }
+        scan.folders.push((folder.to_owned(), place(&data)));
+        for entry in fs::read_dir(&here)? {
+            let name = entry?.file_name();
+            if self.ignore.iter().any(|pattern| matches(pattern.as_bytes(), name.as_encoded_bytes())) {
+                continue;
+            }
+            let path = folder.join(name);
+            let data = match fs::symlink_metadata(self.root.join(&path)) {
+                // It went away since the folder was read.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+                Err(error) => {
+                    scan.problems.push((path, error));
+                    continue;
+                }
+                Ok(data) => data,
+            };
+            if excluded.contains(&place(&data)) {
+                continue;
+            }
+            if data.is_dir() {
+                below.push(path);
+            } else {
+                let found = self.found(&path, &data);
+                scan.files.push((path, found));
+            }
+        }
+        Ok(())
+    }
+
+    /// What stands under the name of a file now; `None` if nothing does.
+    pub fn look(&self, path: &Path) -> Option<Found> {
+        let data = fs::symlink_metadata(self.root.join(path)).ok()?;
+        Some(self.found(path, &data))
+    }
+
+    fn found(&self, path: &Path, data: &Metadata) -> Found {
+        let kind = data.file_type();
+        if kind.is_file() {
+            Found::File(data.into())
+        } else if kind.is_symlink() {
+            self.follow(&self.root.join(path))
+        } else if kind.is_fifo() {
+            Found::Other("a FIFO")
+        } else if kind.is_socket() {
+            Found::Other("a socket")
+        } else if kind.is_dir() {
+            Found::Other("a folder")
+        } else {
+            Found::Other("a device")
+        }
+    }
+
+    fn follow(&self, link: &Path) -> Found {
+        if self.symlinks == Symlinks::None {
+            return Found::Other("a symbolic link");
+        }
+        let (Ok(target), Ok(data)) = (fs::canonicalize(link), fs::metadata(link)) else {
+            return Found::Other("a symbolic link that leads nowhere");
+        };
+        let inside = fs::canonicalize(&self.root).is_ok_and(|root| target.starts_with(root));
+        if !data.is_file() {
+            Found::Other("a symbolic link to something other than a file")
+        } else if self.symlinks == Symlinks::Inside && !inside {
+            Found::Other("a symbolic link that leads out of the folder")
+        } else {
+            Found::File(Identity::from(&data))
+        }
+    }
+}
+
+/// Device and inode: the same for every name that leads to one file.
+fn place(data: &Metadata) -> (u64, u64) {
+    (data.dev(), data.ino())
+}
+
+/// Whether a name fits a pattern in which `*` stands for anything.
+fn matches(pattern: &[u8], name: &[u8]) -> bool {
+    match pattern.iter().position(|&b| b == b'*') {
+        None => pattern == name,
+        Some(star) => {
+            let (head, tail) = (&pattern[..star], &pattern[star + 1..]);
+            name.starts_with(head) && (head.len()..=name.len()).any(|from| matches(tail, &name[from..]))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_know_one_sign() {
+        let cases = [
+            (".*", ".nfs0001", true),
+            (".*", "pit.inp", false),
+            ("*.tmp", "pit.inp.tmp", true),
+            ("*.tmp", "tmp", false),
+            ("*~", "pit.inp~", true),
+            ("a*b*c", "a-b-b-c", true),
+            ("a*b*c", "a-c-b", false),
+            ("*", "", true),
+        ];
+        for (pattern, name, expected) in cases {
+            assert_eq!(matches(pattern.as_bytes(), name.as_bytes()), expected, "{pattern} {name}");
+        }
+    }
+
+    #[test]
+    fn a_link_out_of_the_folder_is_not_followed_by_default() {
+        let outside = tempfile::NamedTempFile::new().expect("a file");
+        let folder = tempfile::tempdir().expect("a folder");
+        fs::write(folder.path().join("in.msh"), "x").expect("written");
+        std::os::unix::fs::symlink(outside.path(), folder.path().join("out.msh")).expect("linked");
+        std::os::unix::fs::symlink("in.msh", folder.path().join("to-in.msh")).expect("linked");
+        std::os::unix::fs::symlink(".", folder.path().join("loop")).expect("linked");
+        let scan = Walk::new(folder.path(), &Watch::default()).scan();
+        let regular: Vec<_> = scan.files.iter().map(|(_, f)| matches!(f, Found::File(_))).collect();
+        assert_eq!(regular, [true, false, false, true], "in, loop, out, to-in");
+    }
+}

@@ -1,0 +1,73 @@
+//! Puts a file where readers look, so that they see the old one or the new one whole, even after a power loss.
+
+use std::ffi::OsStr;
+use std::fs::{self, File, Permissions};
+use std::io::{self, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+
+/// How the names of files that are not yet published begin and end.
+const UNFINISHED: (&str, &str) = (".meshgauge-", ".tmp");
+
+/// Writes `text` to `path`: temporary file in the same folder, fsync, rename, fsync of the folder.
+pub fn publish(path: &Path, text: &str) -> io::Result<()> {
+    let folder = folder_of(path);
+    fs::create_dir_all(folder)?;
+    let mut file = tempfile::Builder::new()
+        .prefix(UNFINISHED.0)
+        .suffix(UNFINISHED.1)
+        .permissions(Permissions::from_mode(0o666))
+        .tempfile_in(folder)?;
+    file.write_all(text.as_bytes())?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|e| e.error)?;
+    sync_folder(folder)
+}
+
+/// Gives a published file another name in the same folder.
+pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    fs::rename(from, to)?;
+    sync_folder(folder_of(to))
+}
+
+/// Removes what a killed process left unfinished in the folder of `path`.
+pub fn sweep(path: &Path) {
+    let Ok(entries) = fs::read_dir(folder_of(path)) else { return };
+    for entry in entries.flatten() {
+        if is_unfinished(&entry.file_name())
+            && let Err(error) = fs::remove_file(entry.path())
+        {
+            tracing::warn!("{}: {error}", entry.path().display());
+        }
+    }
+}
+
+fn is_unfinished(name: &OsStr) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(UNFINISHED.0) && name.ends_with(UNFINISHED.1))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_published_file_replaces_the_old_one_and_leaves_nothing_beside() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("sub/pit.summary.json");
+        publish(&path, "old").expect("published");
+        publish(&path, "new").expect("published again");
+        assert_eq!(fs::metadata(&path).map(|data| data.len()).ok(), Some(3));
+        assert_eq!(fs::read_dir(path.parent().expect("sub")).expect("sub").count(), 1);
+    }
+}

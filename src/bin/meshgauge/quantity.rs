@@ -1,0 +1,102 @@
+//! Sizes (`256MiB`) and durations (`2s`) as users write them.
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+/// A number of bytes: `256MiB`, `1.5GB`, `4096`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Size(pub u64);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse::<bytesize::ByteSize>() {
+            Ok(size) => Ok(Size(size.as_u64())),
+            Err(_) => Err(format!("expected a size such as 256MiB, found \"{text}\"")),
+        }
+    }
+}
+
+/// A length of time: `2s`, `1h 30min`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Span(pub Duration);
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match humantime::parse_duration(text) {
+            Ok(duration) => Ok(Span(duration)),
+            Err(_) => Err(format!("expected a duration such as 2s or 5min, found \"{text}\"")),
+        }
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        bytesize::ByteSize(self.0).display().iec().fmt(f)
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        humantime::format_duration(self.0).fmt(f)
+    }
+}
+
+impl TryFrom<String> for Size {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl TryFrom<String> for Span {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+/// Exact, unlike the text for people.
+impl From<Size> for String {
+    fn from(size: Size) -> Self {
+        size.0.to_string()
+    }
+}
+
+impl From<Span> for String {
+    fn from(span: Span) -> Self {
+        span.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_binary_or_decimal_as_written() {
+        assert_eq!("256MiB".parse(), Ok(Size(256 << 20)));
+        assert_eq!("1GB".parse(), Ok(Size(1_000_000_000)));
+        assert_eq!("4096".parse(), Ok(Size(4096)));
+        assert!("much".parse::<Size>().is_err());
+        assert!("-1".parse::<Size>().is_err());
+    }
+
+    #[test]
+    fn quantities_survive_the_way_to_a_worker() {
+        let size = Size(123_456_789);
+        assert_eq!(String::from(size).parse(), Ok(size));
+        let span = Span(Duration::from_millis(90_061_001));
+        assert_eq!(String::from(span).parse(), Ok(span));
+    }
+}
