@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::input::{Input, Source};
+use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
 pub use sink::{Chunks, ElementSink, Ledger, TypeCount};
@@ -39,6 +40,11 @@ pub trait Format: Sync {
     fn looks_for(&self) -> &'static str;
     /// Whether the first bytes (at most [`HEAD_BYTES`]) are of this format.
     fn detect(&self, head: &[u8]) -> bool;
+    /// Shapes whose orientation the format's writers do not agree on: each such shape is judged by its own majority
+    /// instead of the mesh's.
+    fn own_orientation(&self) -> &'static [Shape] {
+        &[]
+    }
     /// Says where the node and element records stand, in file order. Headers are not believed: what is yielded must lie
     /// in the file.
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()>;
@@ -54,7 +60,7 @@ pub trait Outline {
     /// A piece of element records.
     fn elements(&mut self, piece: Piece<dyn ElementLayout>) -> Result<()>;
     /// Elements that are counted and not measured, and that no piece will speak of.
-    fn count(&mut self, kind: &crate::mesh::ElementType, count: u64) -> Result<()>;
+    fn count(&mut self, kind: &ElementType, count: u64) -> Result<()>;
 }
 
 /// A run of records that one call decodes, in bounded memory.

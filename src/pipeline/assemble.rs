@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::time::{Instant, SystemTime};
 
 use super::Options;
-use super::measure::{Bins, ShapeBins, ShapeStatistics};
-use super::merge::Merged;
+use super::measure::{Bins, Hits, ShapeBins, ShapeStatistics};
+use super::merge::{ByShape, Merged};
 use crate::error::Result;
 use crate::formats::{FORMATS, Format, Ledger};
 use crate::input::{Input, mesh_name};
@@ -17,6 +17,9 @@ use crate::summary::{
     Bounds, Checks, Elements, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
     ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict, rules,
 };
+
+/// Whether a shape is stored with negative orientation as a whole.
+type Reversed = [bool; Shape::ALL.len()];
 
 /// Everything that a run found.
 pub(super) struct Found<'a> {
@@ -32,7 +35,8 @@ pub(super) struct Found<'a> {
 
 /// Puts the summary together and judges it.
 pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
-    let shapes = shapes(&found);
+    let reversed = reversed_shapes(found.format, &found.merged.shapes);
+    let shapes = shapes(&found, &reversed);
     let mut summary = Summary {
         schema: Cow::Borrowed(SCHEMA),
         mesh: mesh_file(&found),
@@ -40,7 +44,7 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
         elements: elements(&found.merged.ledger),
         totals: totals(&shapes),
         sizes: Sizes { edge_length: None, element_size: None },
-        checks: checks(&found),
+        checks: checks(&found, &reversed),
         shapes,
         expected: None,
         verdict: Verdict { status: Status::Pass, reasons: Vec::new() },
@@ -48,7 +52,7 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
     };
     summary.sizes = sizes(&found, summary.dimension());
     options.judgement.judge(&mut summary);
-    name_first_elements(&found, &mut summary);
+    name_first_elements(&found, &reversed, &mut summary);
     keep_measures(&mut summary, &options.measures);
     if options.run_info {
         summary.run = Some(run(&found));
@@ -90,13 +94,14 @@ fn elements(ledger: &Ledger) -> Elements {
     elements
 }
 
-fn shapes(found: &Found<'_>) -> BTreeMap<Shape, ShapeSummary> {
+fn shapes(found: &Found<'_>, reversed: &Reversed) -> BTreeMap<Shape, ShapeSummary> {
     let mut shapes = BTreeMap::new();
     for shape in Shape::ALL {
         if let (Some(statistics), Some(bins)) = (&found.merged.shapes[shape.index()], found.bins.shape(shape))
         {
             let order = order(&found.merged.ledger, shape);
-            shapes.insert(shape, shape_summary(shape, statistics, bins, order));
+            let inverted = inverted(statistics, reversed[shape.index()]).count;
+            shapes.insert(shape, shape_summary(shape, statistics, bins, order, inverted));
         }
     }
     shapes
@@ -107,6 +112,7 @@ fn shape_summary(
     statistics: &ShapeStatistics,
     bins: &ShapeBins,
     order: BTreeMap<String, u64>,
+    inverted: u64,
 ) -> ShapeSummary {
     let is_solid = shape.dimension() == 3;
     let mut found = ShapeSummary {
@@ -114,7 +120,7 @@ fn shape_summary(
         order,
         area: (!is_solid).then_some(statistics.extent),
         volume: is_solid.then_some(statistics.extent),
-        inverted: inverted(statistics).count,
+        inverted,
         degenerate: statistics.degenerate.count,
         measures: BTreeMap::new(),
         correlation: BTreeMap::new(),
@@ -158,11 +164,24 @@ fn measure_summary(
     }
 }
 
-/// Elements that are oriented against the majority of their shape. Writers disagree on which orientation is positive
-/// (VTK changed its own mind about wedges in 9.7), so the majority decides.
-fn inverted(statistics: &ShapeStatistics) -> super::measure::Found {
-    let (positive, negative) = (statistics.positive, statistics.negative);
-    if negative.count > positive.count { positive } else { negative }
+/// Which shapes are stored with negative orientation as a whole. Of either dimension the majority of the mesh decides; a
+/// shape that the format's writers disagree about (VTK changed its own mind about wedges in 9.7) decides for itself.
+fn reversed_shapes(format: &dyn Format, shapes: &ByShape) -> Reversed {
+    let own = |shape: Shape| format.own_orientation().contains(&shape);
+    Shape::ALL.map(|shape| {
+        let peers = Shape::ALL.into_iter().filter(|other| {
+            if own(shape) { *other == shape } else { !own(*other) && other.dimension() == shape.dimension() }
+        });
+        let found: Vec<_> = peers.filter_map(|peer| shapes[peer.index()].as_deref()).collect();
+        let negative: u64 = found.iter().map(|peer| peer.negative.count).sum();
+        let positive: u64 = found.iter().map(|peer| peer.positive.count).sum();
+        negative > positive
+    })
+}
+
+/// Elements of a shape that are oriented against the rest of the mesh.
+fn inverted(statistics: &ShapeStatistics, reversed: bool) -> Hits {
+    if reversed { statistics.positive } else { statistics.negative }
 }
 
 fn order(ledger: &Ledger, shape: Shape) -> BTreeMap<String, u64> {
@@ -211,7 +230,7 @@ fn sizes(found: &Found<'_>, dimension: usize) -> Sizes {
     }
 }
 
-fn checks(found: &Found<'_>) -> Checks {
+fn checks(found: &Found<'_>, reversed: &Reversed) -> Checks {
     let ledger = &found.merged.ledger;
     let mut checks = Checks {
         missing_nodes: ledger.missing_nodes,
@@ -219,26 +238,25 @@ fn checks(found: &Found<'_>) -> Checks {
         unused_nodes: found.nodes.unused(),
         ..Checks::default()
     };
-    for statistics in found.merged.shapes.iter().flatten() {
-        checks.inverted += inverted(statistics).count;
+    for (statistics, reversed) in found.merged.shapes.iter().zip(reversed) {
+        let Some(statistics) = statistics else { continue };
+        checks.inverted += inverted(statistics, *reversed).count;
         checks.degenerate += statistics.degenerate.count;
         checks.concave_faces += statistics.concave;
         checks.crossed_faces += statistics.crossed;
-        if statistics.negative.count > statistics.positive.count {
-            checks.reversed += statistics.negative.count;
-        }
+        checks.reversed += if *reversed { statistics.negative.count } else { 0 };
     }
     checks
 }
 
 /// Says which element to look at first where the verdict only counted.
-fn name_first_elements(found: &Found<'_>, summary: &mut Summary) {
+fn name_first_elements(found: &Found<'_>, reversed: &Reversed, summary: &mut Summary) {
     for reason in &mut summary.verdict.reasons {
         if let (None, Some(shape)) = (reason.element, reason.shape)
             && let Some(statistics) = &found.merged.shapes[shape.index()]
         {
             reason.element = match &*reason.rule {
-                rules::INVERTED => inverted(statistics).first,
+                rules::INVERTED => inverted(statistics, reversed[shape.index()]).first,
                 rules::DEGENERATE => statistics.degenerate.first,
                 _ => None,
             };

@@ -26,11 +26,11 @@ pub(super) struct ShapeStatistics {
     /// Edge lengths: minus the smallest, and the largest, so that both grow.
     pub edges: Option<[f64; 2]>,
     /// Elements by the sign of their orientation, and the first of each.
-    pub positive: Found,
+    pub positive: Hits,
     /// Negative ones.
-    pub negative: Found,
+    pub negative: Hits,
     /// Degenerate ones.
-    pub degenerate: Found,
+    pub degenerate: Hits,
     /// Tetrahedra whose measures stand in the order M32 >= M34 >= M31 >= M33.
     pub ordered: u64,
     /// Quadrilateral faces with a re-entrant corner.
@@ -41,12 +41,12 @@ pub(super) struct ShapeStatistics {
 
 /// How many, and the number of the first.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Found {
+pub(super) struct Hits {
     pub count: u64,
     pub first: Option<u64>,
 }
 
-impl Found {
+impl Hits {
     fn add(&mut self, label: u64) {
         self.count += 1;
         self.first.get_or_insert(label);

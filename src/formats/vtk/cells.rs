@@ -5,6 +5,9 @@ use std::sync::{Arc, LazyLock};
 use crate::error::{Error, Result};
 use crate::mesh::{ElementType, Shape};
 
+/// VTK 9.7 turned its wedge round, and writers follow either sense.
+pub(super) const OWN_ORIENTATION: &[Shape] = &[Shape::Wedge];
+
 /// Highest order of an arbitrary-order cell.
 const MAX_ORDER: usize = 32;
 

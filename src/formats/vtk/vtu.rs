@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
 use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
+use crate::mesh::Shape;
 
 use super::array::{Number, Role, Stored, Stores, Unpacked, check_fits};
 use super::ascii;
@@ -33,6 +34,10 @@ impl Format for Vtu {
 
     fn looks_for(&self) -> &'static str {
         "the XML element <VTKFile"
+    }
+
+    fn own_orientation(&self) -> &'static [Shape] {
+        super::cells::OWN_ORIENTATION
     }
 
     fn detect(&self, head: &[u8]) -> bool {

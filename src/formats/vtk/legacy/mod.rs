@@ -10,6 +10,7 @@ mod reader;
 use crate::error::{Error, Result};
 use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
+use crate::mesh::Shape;
 
 use super::array::{Array, Number, Role, Stored, Stores};
 use super::layout::{Cells, Lists, Points, Types, walk_counted};
@@ -36,6 +37,10 @@ impl Format for Legacy {
 
     fn looks_for(&self) -> &'static str {
         "\"# vtk DataFile Version\" in the first line"
+    }
+
+    fn own_orientation(&self) -> &'static [Shape] {
+        super::cells::OWN_ORIENTATION
     }
 
     fn detect(&self, head: &[u8]) -> bool {
