@@ -39,7 +39,8 @@ fn abaqus(wedge: [usize; 6]) -> String {
 
 fn vtk(wedge: [usize; 6]) -> String {
     let mut text =
-        "# vtk DataFile Version 3.0\ncube and wedge\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 11 double\n".to_owned();
+        "# vtk DataFile Version 3.0\ncube and wedge\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 11 double\n"
+            .to_owned();
     for [x, y, z] in POINTS {
         text += &format!("{x} {y} {z}\n");
     }

@@ -13,7 +13,7 @@ use super::Progress;
 use super::measure::{Bins, Workspace, measure};
 use super::merge::{Merged, Message, merge};
 use crate::error::Result;
-use crate::formats::{Chunks, ElementLayout, ElementSink, Ledger, Piece};
+use crate::formats::{Chunks, ElementLayout, ElementSink, Piece};
 use crate::mesh::{Chunk, Nodes, Shape};
 
 /// What all workers share.
@@ -181,6 +181,3 @@ impl Drop for SendsEnd {
         }
     }
 }
-
-/// What the pieces held besides the chunks.
-pub(super) type Done = Result<(Ledger, u32)>;

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender};
 
-use super::elements::Done;
 use super::measure::ShapeStatistics;
 use crate::error::{Error, Result};
 use crate::formats::Ledger;
 use crate::mesh::{Origin, Shape};
 use crate::statistics::Tree;
+
+/// What a piece held besides its chunks, and how many those were.
+type Done = Result<(Ledger, u32)>;
 
 /// What workers tell the merge stage.
 pub(super) enum Message {

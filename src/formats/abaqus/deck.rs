@@ -138,6 +138,9 @@ impl<'a> Deck<'a> {
         if !found.map_err(|_| source.malformed_text(first, "a data line"))? {
             return Ok(());
         }
+        if range.end == source.len() && matches!(self.open, Open::Nodes(_) | Open::Elements(_)) {
+            ends_with_its_line(source, range.start, bytes)?;
+        }
         // Pieces begin with a line, not with its first field.
         let line =
             memchr::memrchr(b'\n', &bytes[..fields.at]).map_or(range.start, |k| range.start + k as u64 + 1);
@@ -310,6 +313,17 @@ impl<'a> Deck<'a> {
         }
         Ok(())
     }
+}
+
+/// Refuses mesh data that stops in the middle of a line: a number cut short is still a number, and a deck has no end
+/// mark that would tell.
+fn ends_with_its_line(source: &Source, at: u64, data: &[u8]) -> Result<()> {
+    let last = memchr::memrchr(b'\n', data).map_or(0, |k| k + 1);
+    if data[last..].trim_ascii().is_empty() {
+        return Ok(());
+    }
+    let expected = "an end of line after the last data line (without it the file may have been cut off)";
+    Err(source.malformed_text(at + last as u64, expected))
 }
 
 fn unbalanced(expected: &str) -> Error {

@@ -98,6 +98,10 @@ fn errors_name_the_line_and_what_stands_there() {
         (format!("{PART}*INSTANCE,NAME=I,PART=Q\n1,2,3\n1,y\n"), "line 12: expected a number, found \"y\""),
         ("*HEADING\nnothing\n*STEP\n".into(), "expected a mesh, found a deck that has no *NODE data"),
         ("*NODE\n** none\n*ELEMENT,TYPE=S4\n".into(), "expected a mesh, found a deck that has no *NODE data"),
+        (
+            "*NODE\n1,0,0,0\n*ELEMENT,TYPE=MASS\n1,1".into(),
+            "line 4: expected an end of line after the last data line",
+        ),
         ("".into(), "expected a mesh, found an empty file"),
     ];
     for (text, expected) in rows {

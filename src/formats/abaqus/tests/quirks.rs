@@ -7,7 +7,7 @@ fn quirks_of_node_lines() {
     let text = "*Heading\r\n caf\u{e9} * star\r\n*NODE , nset = all\r\n ** note\r\n  1 , 1.D0 ,-2.5E-1,  \r\n\r\n2,.5,,3,\r\n\
                 3\r\n999999999, 1, 2, 3, 0., 0., 1.  \r\n*NODE PRINT\r\n9, 9, 9, 9\r\n*NODE OUTPUT\r\nU\r\n*node\r\n1, 7.";
     let mut bytes: Vec<u8> = text.bytes().filter(|b| *b != 0xc3).collect();
-    bytes.extend_from_slice(b"\r\n");
+    bytes.extend_from_slice(b"\r\n*ELEMENT,TYPE=MASS\r\n1,1\r\n");
     let mesh = read_files(&[("deck.inp", &bytes)]).expect("a deck");
     assert_eq!(mesh.nodes.count(), 4);
     let at = |id| mesh.nodes.rows()[mesh.nodes.row(id).expect("defined") as usize];
@@ -110,8 +110,8 @@ fn frames_hold_until_the_next_and_within_their_part() {
 fn included_files_go_on_where_the_includer_stands() {
     let mesh = read_files(&[
         ("deck.inp", b"*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=S3, INPUT=\"more elements.inp\"\n*ELEMENT,TYPE=S4\n*include,input=list.inp\n2,4,3,2,1\n"),
-        ("nodes.inp", b"\xef\xbb\xbf*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1"),
-        ("more elements.inp", b"** three\n11,1,2,3"),
+        ("nodes.inp", b"\xef\xbb\xbf*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n"),
+        ("more elements.inp", b"** three\n11,1,2,3\n"),
         ("list.inp", b"1,1,2,3,4\n"),
     ])
     .expect("a deck");
