@@ -8,6 +8,7 @@ mod abaqus;
 mod batch;
 pub mod binary;
 mod gmsh;
+mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
 mod sink;
@@ -22,6 +23,7 @@ use crate::input::{Input, Source};
 use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
+pub use plan::Plan;
 pub use sink::{Chunks, ElementSink, Ledger, TypeCount};
 
 /// The number of bytes that a piece aims at. It does not depend on threads or budget: chunks, and so the last bits of

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{Chunks, ElementLayout, ElementSink, Format, Ledger, NodeBatch, NodeLayout, Outline, Piece};
+use super::{Chunks, ElementSink, Format, Ledger, NodeBatch, Plan};
 use crate::error::Result;
 use crate::input::{Input, Limits, Scratch};
-use crate::mesh::{Budget, Chunk, ElementType, Nodes, NodesBuilder, Shape};
+use crate::mesh::{Budget, Chunk, Nodes, NodesBuilder, Shape};
 
 /// A mesh in memory.
 #[derive(Debug)]
@@ -14,30 +14,6 @@ pub(crate) struct Mesh {
     /// Element number, shape and corner coordinates.
     pub(crate) elements: Vec<(u64, Shape, Vec<[f64; 3]>)>,
     pub(crate) ledger: Ledger,
-}
-
-#[derive(Default)]
-struct Pieces {
-    nodes: Vec<Piece<dyn NodeLayout>>,
-    elements: Vec<Piece<dyn ElementLayout>>,
-    ledger: Ledger,
-}
-
-impl Outline for Pieces {
-    fn nodes(&mut self, piece: Piece<dyn NodeLayout>) -> Result<()> {
-        self.nodes.push(piece);
-        Ok(())
-    }
-
-    fn elements(&mut self, piece: Piece<dyn ElementLayout>) -> Result<()> {
-        self.elements.push(piece);
-        Ok(())
-    }
-
-    fn count(&mut self, kind: &ElementType, count: u64) -> Result<()> {
-        self.ledger.count(kind, count);
-        Ok(())
-    }
 }
 
 #[derive(Default)]
@@ -58,7 +34,7 @@ impl Chunks for Kept {
 pub(crate) fn read(format: &dyn Format, path: &Path) -> Result<Mesh> {
     let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
     let input = Input::open(path, &Limits::default(), &scratch)?;
-    let mut pieces = Pieces::default();
+    let mut pieces = Plan::default();
     format.outline(&input, &mut pieces)?;
     let mut builder = NodesBuilder::new(&Budget::new(1 << 28), &scratch);
     let mut batch = NodeBatch::default();

@@ -9,7 +9,6 @@ mod measure;
 mod merge;
 mod nodes;
 mod options;
-mod plan;
 mod run;
 #[cfg(test)]
 mod tests;

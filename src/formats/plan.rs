@@ -1,13 +1,15 @@
 //! Where everything stands in the file, as the format outlined it.
 
+use super::{ElementLayout, Ledger, NodeLayout, Outline, Piece};
 use crate::error::Result;
-use crate::formats::{ElementLayout, Ledger, NodeLayout, Outline, Piece};
 use crate::mesh::ElementType;
 
 /// The pieces of a file, in file order.
 #[derive(Default)]
-pub(super) struct Plan {
+pub struct Plan {
+    /// Pieces of node records.
     pub nodes: Vec<Piece<dyn NodeLayout>>,
+    /// Pieces of element records.
     pub elements: Vec<Piece<dyn ElementLayout>>,
     /// Elements that no piece speaks of.
     pub ledger: Ledger,
