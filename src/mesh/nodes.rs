@@ -249,6 +249,12 @@ impl Nodes {
         self.rows.rows()
     }
 
+    /// Asks the processor for a row of coordinates that will be read soon.
+    #[inline(always)]
+    pub fn prefetch(&self, row: u32) {
+        self.rows.prefetch(row as usize);
+    }
+
     /// The row of the node with number `id`.
     #[inline(always)]
     pub fn row(&self, id: u64) -> Option<u32> {

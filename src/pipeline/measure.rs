@@ -180,6 +180,9 @@ pub(super) fn measure(
     let position = position(chunk.origin());
     let blocks = chunk.rows().chunks(LANES * shape.corners()).zip(chunk.labels().chunks(LANES));
     for (number, (rows, labels)) in blocks.enumerate() {
+        // Meshes are numbered less well than one hopes: without this a third of the time goes by waiting for nodes.
+        let next = chunk.rows().iter().skip((number + 1) * LANES * shape.corners());
+        next.take(LANES * shape.corners()).for_each(|row| nodes.prefetch(*row));
         gather(rows, nodes.rows(), shape.corners(), &mut work.corners);
         let first = position + (number * LANES) as u64;
         measure_elements(shape, labels, signed, first, work, bins, &mut found);
