@@ -179,8 +179,10 @@ def compare_whole(found, summary, mesh):
     for statistic, expected in (("min", sizes.min()), ("max", sizes.max()), ("mean", sizes.mean())):
         found.close(f"element size {statistic}", element_size[statistic], float(expected), largest)
     compare_quantiles(found, "element size", element_size["quantiles"], sizes)
-    for check, of in (("inverted", "inverted"), ("degenerate", "degenerate"), ("reversed", "reversed")):
-        found.equal(f"check of {check}", summary["checks"][check], sum(getattr(s, of) for s in mesh.shapes.values()))
+    for check in ("inverted", "degenerate", "reversed"):
+        found.equal(f"check of {check}", summary["checks"][check], sum(getattr(s, check) for s in mesh.shapes.values()))
+    flawed = summary["checks"]["concave_faces"] + summary["checks"]["crossed_faces"]
+    found.equal("concave and crossed faces", flawed, sum(s.reentrant for s in mesh.shapes.values()))
 
 
 def score(program, path, threads):

@@ -6,7 +6,7 @@ import bz2
 import gzip
 import itertools
 import lzma
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gmsh
@@ -15,14 +15,14 @@ import numpy as np
 import vtk
 import zstandard
 from meshio._mesh import topological_dimension
-from meshio._vtk_common import meshio_to_vtk_type
+from meshio._vtk_common import meshio_to_vtk_order, meshio_to_vtk_type
 from meshio.abaqus._abaqus import meshio_to_abaqus_type
 from meshio.gmsh import meshio_to_gmsh_type
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 import models
 from models import capture, cell_name, in_digits, in_single, only, session, vtk_ordered
-from reference import Block, Mesh
+from reference import SOLIDS, Block, Mesh
 
 
 @dataclass
@@ -49,14 +49,31 @@ def all_msh(folder, name, mesh, versions=MSH):
     for version in versions:
         path = folder / f"gmsh-{name}-{version}.msh"
         write_msh(path, *MSH[version])
-        yield Case(path, mesh)
+        yield Case(path, renumbered(path, mesh) if version.startswith("22") else mesh)
+
+
+def renumbered(path, mesh):
+    """MSH 2.2 numbers the elements anew, and leaves out what lies between the parts of a partition: Gmsh reads it back."""
+    model = gmsh.model.getCurrent()
+    gmsh.option.setNumber("Mesh.PartitionCreateTopology", 0)
+    gmsh.open(str(path))
+    gmsh.option.setNumber("Mesh.PartitionCreateTopology", 1)
+    found = capture()
+    gmsh.model.remove()
+    gmsh.model.setCurrent(model)
+    assert len(found.points) == len(mesh.points), path
+    for name, shape in found.shapes.items():
+        if (name in SOLIDS) == (mesh.dimension == 3):
+            whole = mesh.shapes[name]
+            assert shape.count == whole.count and abs(shape.extent / whole.extent - 1) < 1e-13, path
+    return found
 
 
 def inp(folder, name, mesh):
-    """Gmsh's Abaqus deck has no points, and nothing for the complete second-order cells."""
+    """Gmsh's Abaqus deck has 14 digits, no points, and nothing for the complete second-order cells."""
     path = folder / f"gmsh-{name}.inp"
     gmsh.write(str(path))
-    yield Case(path, only(mesh, lambda b: b.nodes.shape[1] not in (1, 14, 18, 27)))
+    yield Case(path, in_digits(only(mesh, lambda b: b.nodes.shape[1] not in (1, 14, 18, 27)), 14))
 
 
 GMSH_MODELS = {
@@ -291,6 +308,16 @@ MESHIO = {
 KNOWN = {"msh": meshio_to_gmsh_type, "vtk": meshio_to_vtk_type, "vtu": meshio_to_vtk_type, "inp": meshio_to_abaqus_type}
 
 
+def held(mesh, ending):
+    """What the file holds: wedges of VTK as they stood before VTK 9.7 turned them, 12 digits in the text of a VTU."""
+    if not ending.endswith(("vtk", "vtu")):
+        return mesh.relabelled(1)
+    blocks = [replace(b, corners=b.corners[:, meshio_to_vtk_order("wedge")]) if cell_name(b) == "wedge" else b
+              for b in mesh.blocks]
+    turned = Mesh(mesh.points, blocks).relabelled(0)
+    return in_digits(turned, 12) if ending == "ascii.vtu" else turned
+
+
 def from_meshio(folder, meshes):
     for name in ("pit", "pit-2", "specimen", "specimen-2", "extruded", "extruded-2", "extruded-complete", "transition",
                  "transition-2", "transition-complete", "shell", "flawed", "large"):
@@ -300,10 +327,9 @@ def from_meshio(folder, meshes):
             extension = ending.split(".")[-1]
             written = only(vtk_ordered(meshes[name]), lambda b: cell_name(b) in KNOWN[extension]
                            and cell_name(b) in topological_dimension)
-            mesh = written.relabelled(0 if extension in ("vtk", "vtu") else 1)
             path = folder / f"meshio-{name}-{ending}".replace("-.", ".")
-            meshio.write(path, meshio_mesh(mesh, entities=ending.startswith("41")), **options)
-            yield Case(path, mesh)
+            meshio.write(path, meshio_mesh(written, entities=ending.startswith("41")), **options)
+            yield Case(path, held(written, ending))
 
 
 # --- compressed copies -----------------------------------------------------------------------------------------------
@@ -341,6 +367,6 @@ def cases(folder):
     """Writes every file and yields its case."""
     meshes = {"flawed": models.flawed()}
     for case in itertools.chain(from_gmsh(folder, meshes), from_vtk(folder, meshes), from_meshio(folder, meshes)):
+        copies = list(packed(case)) if case.path.name in PACKED else []
         yield case
-        if case.path.name in PACKED:
-            yield from packed(case)
+        yield from copies

@@ -38,8 +38,8 @@ def capture(keep=lambda dimension, entity: True):
     row = dict(zip(tags.tolist(), range(len(tags))))
     blocks = []
     for dimension, entity in gmsh.model.getEntities():
-        if not keep(dimension, entity):
-            continue
+        if not keep(dimension, entity) or gmsh.model.getType(dimension, entity).startswith("Ghost"):
+            continue  # a ghost is an element of another part, once more
         for kind, labels, nodes in zip(*gmsh.model.mesh.getElements(dimension, entity)):
             name, _, order, size, _, primary = gmsh.model.mesh.getElementProperties(kind)
             shape = SHAPE_OF_GMSH.get(name.split()[0])
@@ -94,8 +94,8 @@ def extruded_plate(size=0.13, twist=0.9):
 def transition(size=0.3):
     """A box of hexahedra under a box of tetrahedra: Gmsh puts pyramids between."""
     gmsh.model.add("transition")
-    below = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 0.6)
-    above = gmsh.model.occ.addBox(0, 0, 0.6, 1, 1, 0.8)
+    below = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 0.63)
+    above = gmsh.model.occ.addBox(0, 0, 0.63, 1, 1, 0.8)
     gmsh.model.occ.fragment([(3, below)], [(3, above)])
     gmsh.model.occ.synchronize()
     mesh_sizes(size)

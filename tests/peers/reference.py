@@ -128,6 +128,11 @@ def interior_angles(corners):
     return np.stack(angles)
 
 
+def reentrant(a, b, c, d):
+    """Whether a corner is over 180 degrees; of a bow-tie, whose sides cross, the corners of the smaller half are."""
+    return (interior_angles([a, b, c, d]) > np.pi).any(axis=0)
+
+
 def quadrilateral(a, b, c, d):
     """M21 to M23."""
     corners = [a, b, c, d]
@@ -261,6 +266,7 @@ class Shape:
     inverted: int
     reversed: int
     degenerate: int
+    reentrant: int
     sizes: np.ndarray
     edges: np.ndarray
     measures: dict = field(default_factory=dict)
@@ -324,6 +330,7 @@ class Mesh:
         found = Shape(
             count=len(rows), order=order, extent=float(abs(signed).sum()), inverted=min(positive, negative),
             reversed=negative if negative > positive else 0, degenerate=int(degenerate.sum()),
+            reentrant=sum(int(reentrant(*(corners[c] for c in face)).sum()) for face in QUADRILATERALS.get(shape, [])),
             sizes=np.sqrt((edges ** 2).mean(axis=0)), edges=edges)
         if shape == "tetrahedron":
             add(found, "element", tetrahedron(*corners), labels)
