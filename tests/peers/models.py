@@ -94,8 +94,8 @@ def extruded_plate(size=0.13, twist=0.9):
 def transition(size=0.3):
     """A box of hexahedra under a box of tetrahedra: Gmsh puts pyramids between."""
     gmsh.model.add("transition")
-    below = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 0.63)
-    above = gmsh.model.occ.addBox(0, 0, 0.63, 1, 1, 0.8)
+    below = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 0.634)
+    above = gmsh.model.occ.addBox(0, 0, 0.634, 1, 1, 0.8)
     gmsh.model.occ.fragment([(3, below)], [(3, above)])
     gmsh.model.occ.synchronize()
     mesh_sizes(size)
