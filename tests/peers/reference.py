@@ -263,8 +263,8 @@ class Shape:
     count: int
     order: dict
     extent: float
-    inverted: int
-    reversed: int
+    positive: int
+    negative: int
     degenerate: int
     reentrant: int
     sizes: np.ndarray
@@ -306,6 +306,20 @@ class Mesh:
         found = {b.shape: None for b in self.blocks if b.shape and len(b.nodes)}
         return {shape: self.of_shape(shape) for shape in CORNERS if shape in found}
 
+    def orientation(self, alone=()):
+        """Inverted elements by shape, and how many are stored the other way round as a whole.
+
+        Of either dimension the majority says which way is right; shapes in `alone` decide for themselves.
+        """
+        inverted, turned = {}, 0
+        for name, shape in self.shapes.items():
+            voters = [s for other, s in self.shapes.items() if other == name or not {name, other} & set(alone)
+                      and (other in SOLIDS) == (name in SOLIDS)]
+            reversed_ = sum(s.negative for s in voters) > sum(s.positive for s in voters)
+            inverted[name] = shape.positive if reversed_ else shape.negative
+            turned += shape.negative if reversed_ else 0
+        return inverted, turned
+
     def of_shape(self, shape):
         blocks = [b for b in self.blocks if b.shape == shape and len(b.nodes)]
         rows = np.concatenate([b.corners for b in blocks])
@@ -328,8 +342,8 @@ class Mesh:
         for b in blocks:
             order[str(b.order)] = order.get(str(b.order), 0) + len(b.nodes)
         found = Shape(
-            count=len(rows), order=order, extent=float(abs(signed).sum()), inverted=min(positive, negative),
-            reversed=negative if negative > positive else 0, degenerate=int(degenerate.sum()),
+            count=len(rows), order=order, extent=float(abs(signed).sum()), positive=positive, negative=negative,
+            degenerate=int(degenerate.sum()),
             reentrant=sum(int(reentrant(*(corners[c] for c in face)).sum()) for face in QUADRILATERALS.get(shape, [])),
             sizes=np.sqrt((edges ** 2).mean(axis=0)), edges=edges)
         if shape == "tetrahedron":
