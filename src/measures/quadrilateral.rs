@@ -150,7 +150,8 @@ pub(super) fn flaws_of(points: &[Vector; 4]) -> Flaws {
         | q.is_reentrant(&corners[2], b * c)
         | q.is_reentrant(&corners[3], c * d);
     // A side with its two neighbours on either hand turns once left and once right; where two opposite sides
-    // both do, they cross. This needs no mean normal: a symmetric bow-tie has none.
+    // both do, they cross. This needs no mean normal: a symmetric bow-tie has none. Where there is one, the corners of
+    // the smaller half are re-entrant; without such a corner it is folded sharply and not crossed.
     let rounding = -ROUNDING * (a * b) * (c * d);
     let turns = [
         dot(&corners[0], &corners[1]) < rounding,
@@ -158,7 +159,8 @@ pub(super) fn flaws_of(points: &[Vector; 4]) -> Flaws {
         dot(&corners[2], &corners[3]) < rounding,
         dot(&corners[3], &corners[0]) < rounding,
     ];
-    let crossing = (turns[0] & turns[2]) | (turns[1] & turns[3]);
+    let opposite = (turns[0] & turns[2]) | (turns[1] & turns[3]);
+    let crossing = opposite & (reentrant | (q.twice_area <= 0.0));
     Flaws { concave: reentrant & !crossing, crossing }
 }
 

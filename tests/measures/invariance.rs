@@ -211,3 +211,11 @@ fn flaws_of_outlines() {
     assert_eq!(flaws([CUBE[0], CUBE[2], CUBE[1], CUBE[3]]), (false, true));
     assert_eq!(flaws([at(0.0, 0.0), at(2.0, 2.0), at(3.0, 0.0), at(0.0, 1.0)]), (false, true));
 }
+
+/// Neighbouring corners turn against each other there as in a bow-tie, but seen along the mean normal it is convex.
+#[test]
+fn a_sharply_folded_quadrilateral_is_not_taken_for_a_bow_tie() {
+    let folded = [[0.0, 0.0, 0.0], [0.0, 1.0, -2.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]];
+    let flaws = quadrilateral::flaws(&folded);
+    assert!(!flaws.crossing && !flaws.concave, "{flaws:?}");
+}
