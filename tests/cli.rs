@@ -1,4 +1,5 @@
 //! The command line: what is printed, what goes wrong how, and the exit status.
+#![cfg(feature = "program")]
 
 use std::fs::{self, File};
 use std::io::{BufReader, pipe};

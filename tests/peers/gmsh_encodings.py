@@ -5,7 +5,7 @@
 
 FOLDER/expected.jsonl has a line a file: name, number of nodes, number of elements of each measured shape, and two sums
 over their corners (corner k of an element adds (k + 1) * (x + 2 y + 3 z), and the square of that). The test
-`every_encoding_that_peers_write_is_read_as_they_see_it` reads the folder that MESHGAUGE_GMSH_PEERS names.
+`every_encoding_that_peers_write_is_read_as_they_see_it` runs this with the Python that MESHGAUGE_PYTHON names.
 """
 
 import json

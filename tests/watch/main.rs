@@ -1,4 +1,5 @@
 //! The daemon: what happens to files that arrive, change, fail, and to a daemon that is stopped or killed.
+#![cfg(feature = "program")]
 
 mod arriving;
 mod daemon;

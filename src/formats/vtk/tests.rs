@@ -88,8 +88,8 @@ fn check_folder(folder: &Path) -> usize {
 
 #[test]
 fn what_vtk_and_meshio_write_is_read() {
-    let Some(python) = std::env::var_os("MESHGAUGE_PEERS_PYTHON") else {
-        eprintln!("skipped: MESHGAUGE_PEERS_PYTHON names no Python with vtk, meshio and numpy");
+    let Some(python) = std::env::var_os("MESHGAUGE_PYTHON") else {
+        eprintln!("skipped: MESHGAUGE_PYTHON names no Python with vtk, meshio and numpy");
         return;
     };
     let folder = tempfile::tempdir().expect("a temporary folder");
