@@ -37,7 +37,8 @@ pub(super) fn read_nodes(
             scope.spawn(move || decode(pieces, next, &empty, &full));
         }
         drop((empty_in, full_out));
-        append(&full_in, &empty_out, &mut builder, progress)
+        // It takes its ends of the channels along: once it has met an error, nobody waits for a batch.
+        append(full_in, empty_out, &mut builder, progress)
     })?;
     builder.finish()
 }
@@ -64,8 +65,8 @@ fn decode(
 
 /// Appends batches in the order of their pieces; the first piece in the file that fails gives the error.
 fn append(
-    full: &Receiver<Decoded>,
-    empty: &Sender<NodeBatch>,
+    full: Receiver<Decoded>,
+    empty: Sender<NodeBatch>,
     builder: &mut NodesBuilder,
     progress: &Progress,
 ) -> Result<()> {

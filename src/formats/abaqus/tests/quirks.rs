@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn quirks_of_node_lines() {
     let text = "*Heading\r\n caf\u{e9} * star\r\n*NODE , nset = all\r\n ** note\r\n  1 , 1.D0 ,-2.5E-1,  \r\n\r\n2,.5,,3,\r\n\
-                3\r\n999999999, 1, 2, 3, 0., 0., 1.  \r\n*NODE PRINT\r\n9, 9, 9, 9\r\n*NODE OUTPUT\r\nU\r\n*node\r\n1, 7.";
+                3\r\n999999999, 1, 2, 3, 0., 0., 1.  \r\n*NODE PRINT\r\n9, 9, 9, 9\r\n*NODE OUTPUT\r\nU\r\n*node\r\n1, 7.\r\n*ELEMENT,TYPE=MASS\r\n1,1";
     let mut bytes: Vec<u8> = text.bytes().filter(|b| *b != 0xc3).collect();
     bytes.extend_from_slice(b"\r\n");
     let mesh = read_files(&[("deck.inp", &bytes)]).expect("a deck");
@@ -97,7 +97,7 @@ fn instances_are_copies_with_numbers_of_their_own() {
 #[test]
 fn frames_hold_until_the_next_and_within_their_part() {
     let text = "*SYSTEM\n0,0,1\n*NODE\n1,1,0\n*SYSTEM\n*NODE,SYSTEM=C\n2,2,90,3\n*SYSTEM\n0,0,0,0,1,0\n0,1,1\n*NODE\n3,1,2,3\n\
-                *PART,NAME=P\n*NODE\n1,1,1,1\n*END PART\n";
+                *PART,NAME=P\n*NODE\n1,1,1,1\n*ELEMENT,TYPE=MASS\n1,1\n*END PART\n";
     let mesh = mesh(text);
     let at = |id| mesh.nodes.rows()[mesh.nodes.row(id).expect("defined") as usize];
     assert_eq!(at(1), [1.0, 0.0, 1.0]);
