@@ -17,6 +17,7 @@ const UNSEEN: &[(&str, fn(kept: &[u8], lost: &[u8]) -> bool, &str)] = &[
         |_, lost| starts_with_any(lost, &["CELL_DATA", "POINT_DATA"]),
         "the data of a mesh come after it",
     ),
+    ("vtk", no_data_yet, "point data of no arrays are allowed, and some writers make them"),
     ("vtk", within_last_number, "the last number is still one without its last digits"),
     ("abaqus", after_the_mesh, "sets come after the mesh"),
     ("abaqus", in_elements_at_end_of_line, "a deck has no end mark: it may well end with any element"),
@@ -30,6 +31,12 @@ fn starts_with_any(bytes: &[u8], words: &[&str]) -> bool {
 
 fn contains(bytes: &[u8], word: &[u8]) -> bool {
     memchr::memmem::find(bytes, word).is_some()
+}
+
+/// Nothing stands after the number of points that data are for.
+fn no_data_yet(kept: &[u8], _: &[u8]) -> bool {
+    let last = kept.trim_ascii_end().rsplit(|b| *b == b'\n').next().unwrap_or_default();
+    last.starts_with(b"POINT_DATA ") || last.starts_with(b"CELL_DATA ")
 }
 
 fn after_the_mesh(kept: &[u8], lost: &[u8]) -> bool {
