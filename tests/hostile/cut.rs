@@ -9,8 +9,11 @@ use crate::attempt::{assert_line, attempt_bytes, refused};
 use crate::packing::pack;
 use crate::{Random, own_meshes};
 
-/// What a cut may take off so that nobody can tell: format, the start of what is lost, why.
-const UNSEEN: &[(&str, fn(kept: &[u8], lost: &[u8]) -> bool, &str)] = &[
+/// Whether a cut leaves a whole mesh, by what is kept and what is lost.
+type Unseen = fn(&[u8], &[u8]) -> bool;
+
+/// Cuts that nobody can tell: format (none for all), which they are, and why.
+const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("", |_, lost| lost.trim_ascii().is_empty(), "blanks at the end say nothing"),
     (
         "vtk",

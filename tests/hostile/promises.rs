@@ -102,7 +102,7 @@ fn counts_that_vtk_files_do_not_keep() {
     for encoding in ["ASCII", "BINARY"] {
         let rows = [
             format!("POINTS {HUGE} float\n0 0 0\n"),
-            format!("POINTS 9999999999999999999 float\n0 0 0\n"),
+            "POINTS 9999999999999999999 float\n0 0 0\n".to_owned(),
             format!("{points}CELLS {HUGE} 4\n3 0 1 2\nCELL_TYPES 1\n5\n"),
             format!("{points}CELLS 1 {HUGE}\n3 0 1 2\nCELL_TYPES 1\n5\n"),
             format!("{points}CELLS 1 4\n{HUGE} 0 1 2\nCELL_TYPES 1\n5\n"),

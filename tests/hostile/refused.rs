@@ -2,11 +2,12 @@
 
 use std::fs;
 
+use meshgauge::Options;
 use meshgauge::error::Kind;
 use meshgauge::formats::FORMATS;
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 
-use crate::attempt::{attempt, attempt_bytes, refused};
+use crate::attempt::{attempt, attempt_bytes, attempt_with, options, refused};
 
 #[test]
 fn what_is_no_regular_file_is_named() {
@@ -91,4 +92,21 @@ fn includes_do_not_lead_out_of_the_folder() {
             assert!(error.path() == Some(&path) && (line || itself), "{name}: {error}");
         }
     }
+}
+
+/// Who names the format himself gets that format's errors.
+#[test]
+fn a_mesh_of_another_format_than_was_named_is_refused() {
+    for (format, path) in crate::own_meshes() {
+        for other in FORMATS.iter().filter(|other| other.name() != format) {
+            let named = Options { format: Some(other.name().to_owned()), ..options() };
+            let what = format!("{} as {}", path.display(), other.name());
+            let error = refused(attempt_with(&path, &named, &what), &what);
+            assert_eq!(error.format(), Some(other.name()), "{error}");
+        }
+    }
+    let (_, path) = &crate::own_meshes()[0];
+    let unknown = Options { format: Some("mesh".to_owned()), ..options() };
+    let error = attempt_with(path, &unknown, "no format").expect_err("no format");
+    assert!(error.is_usage() && error.to_string().contains("abaqus"), "{error}");
 }
