@@ -14,6 +14,7 @@ mod unpack;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use crate::error::{Error, Kind, Result};
@@ -112,7 +113,18 @@ impl Input {
     /// The XXH3 (64 bits) of the bytes as they stand on disk, or as they came in. Where it is not known yet the file
     /// is read for it, once; another thread may do this while the mesh is being scored.
     pub fn xxh3(&self) -> u64 {
-        *self.xxh3.get_or_init(|| self.source.xxh3())
+        self.xxh3_unless(&AtomicBool::new(false)).expect("nobody stops it")
+    }
+
+    /// [`Input::xxh3`], or nothing once `stop` was set and the hash is not known yet.
+    pub fn xxh3_unless(&self, stop: &AtomicBool) -> Option<u64> {
+        match self.xxh3.get() {
+            Some(hash) => Some(*hash),
+            None => {
+                let hash = self.source.xxh3(stop)?;
+                Some(*self.xxh3.get_or_init(|| hash))
+            }
+        }
     }
 
     /// [`Input::xxh3`] as 16 hexadecimal digits.

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::ScratchShare;
 use super::mapped::{Mapped, Window};
@@ -16,6 +17,13 @@ pub enum Spot {
     Unknown,
     /// In text: errors name the line.
     Text(u64),
+    /// In text, at the token `number` (from 0) of those between blanks that start at byte `from`: errors name its line.
+    Token {
+        /// Byte before which no token is counted.
+        from: u64,
+        /// Number of tokens before this one.
+        number: u64,
+    },
     /// In binary data: errors name the byte.
     Binary(u64),
 }
@@ -77,26 +85,53 @@ impl Source {
     /// The number, from 1, of the line that byte `at` stands on. Counts from the start of the file: for errors only.
     pub fn line_of(&self, at: u64) -> u64 {
         let mut lines = 1;
-        self.go_through(at, |bytes| lines += memchr::memchr_iter(b'\n', bytes).count() as u64);
+        self.go_through(at, |bytes| {
+            lines += memchr::memchr_iter(b'\n', bytes).count() as u64;
+            true
+        });
         lines
     }
 
-    /// The XXH3 (64 bits) of all bytes.
-    pub(super) fn xxh3(&self) -> u64 {
+    /// The XXH3 (64 bits) of all bytes; nothing, if `stop` was set meanwhile.
+    pub(super) fn xxh3(&self, stop: &AtomicBool) -> Option<u64> {
         let mut hash = xxhash_rust::xxh3::Xxh3Default::new();
-        self.go_through(self.len(), |bytes| hash.update(bytes));
-        hash.digest()
+        let seen = self.go_through(self.len(), |bytes| {
+            hash.update(bytes);
+            !stop.load(Ordering::Relaxed)
+        });
+        seen.then(|| hash.digest())
     }
 
-    /// Shows all bytes before byte `end`, window by window.
-    fn go_through(&self, end: u64, mut see: impl FnMut(&[u8])) {
+    /// The byte at which the token `number` of those from byte `from` on starts, or the end.
+    fn token(&self, from: u64, number: u64) -> u64 {
+        let (mut at, mut left, mut blank) = (from, number, true);
+        while at < self.len() {
+            let window = self.window(at..at + STEP);
+            for (byte, k) in window.iter().zip(0..) {
+                let starts = blank && *byte > b' ';
+                blank = *byte <= b' ';
+                if starts && left == 0 {
+                    return at + k;
+                }
+                left -= u64::from(starts);
+            }
+            at += window.len() as u64;
+        }
+        self.len()
+    }
+
+    /// Shows all bytes before byte `end`, window by window, until somebody says no. Says whether nobody did.
+    fn go_through(&self, end: u64, mut see: impl FnMut(&[u8]) -> bool) -> bool {
         let end = end.min(self.len());
         let mut from = 0;
         while from < end {
             let to = end.min(from + STEP);
-            see(&self.window(from..to));
+            if !see(&self.window(from..to)) {
+                return false;
+            }
             from = to;
         }
+        true
     }
 
     /// Adds this file and the place `spot` to an error that names none.
@@ -107,6 +142,7 @@ impl Source {
         match spot {
             Spot::Unknown => error,
             Spot::Text(at) => error.at(At::Line(self.line_of(at))),
+            Spot::Token { from, number } => error.at(At::Line(self.line_of(self.token(from, number)))),
             Spot::Binary(at) => error.at(At::Byte(at)),
         }
         .in_file(&self.path)

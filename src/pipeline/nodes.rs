@@ -11,8 +11,8 @@ use crate::error::Result;
 use crate::formats::{NodeBatch, NodeLayout, Piece};
 use crate::mesh::{Nodes, NodesBuilder};
 
-/// A decoded piece with its number.
-type Decoded = (usize, Result<NodeBatch>);
+/// A decoded piece with its number; nothing from a worker that has panicked.
+type Decoded = Option<(usize, Result<NodeBatch>)>;
 
 /// Reads all nodes.
 pub(super) fn read_nodes(
@@ -37,7 +37,8 @@ pub(super) fn read_nodes(
             scope.spawn(move || decode(pieces, next, &empty, &full));
         }
         drop((empty_in, full_out));
-        append(&full_in, &empty_out, &mut builder, progress)
+        // It takes its ends of the channels along: once it has met an error, nobody waits for a batch.
+        append(full_in, empty_out, &mut builder, progress)
     })?;
     builder.finish()
 }
@@ -49,6 +50,7 @@ fn decode(
     empty: &Receiver<NodeBatch>,
     full: &Sender<Decoded>,
 ) {
+    let _end = SendsPanic(full.clone());
     while let Ok(mut batch) = empty.recv() {
         let number = next.fetch_add(1, Ordering::Relaxed);
         let Some(piece) = pieces.get(number) else { return };
@@ -56,22 +58,35 @@ fn decode(
         let done = piece.layout.decode(piece.span.clone(), &mut batch);
         let done = done.map_err(|error| piece.layout.source().place(error, batch.at)).map(|()| batch);
         // The other end has gone: it has met the error of an earlier piece, which is the one that counts.
-        if full.send((number, done)).is_err() {
+        if full.send(Some((number, done))).is_err() {
             return;
+        }
+    }
+}
+
+/// Tells the other end that a worker has panicked: the piece that it had will never come.
+struct SendsPanic(Sender<Decoded>);
+
+impl Drop for SendsPanic {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            let _ = self.0.send(None);
         }
     }
 }
 
 /// Appends batches in the order of their pieces; the first piece in the file that fails gives the error.
 fn append(
-    full: &Receiver<Decoded>,
-    empty: &Sender<NodeBatch>,
+    full: Receiver<Decoded>,
+    empty: Sender<NodeBatch>,
     builder: &mut NodesBuilder,
     progress: &Progress,
 ) -> Result<()> {
     let mut waiting = BTreeMap::new();
     let mut next = 0;
-    for (number, decoded) in full {
+    for decoded in full {
+        // The scope of the threads passes the panic on.
+        let Some((number, decoded)) = decoded else { return Ok(()) };
         waiting.insert(number, decoded);
         while let Some(decoded) = waiting.remove(&next) {
             let batch = decoded?;

@@ -1,5 +1,6 @@
 //! One run, from top to bottom: find the format, outline the file, read the nodes, measure the elements, sum up.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Instant, SystemTime};
 
@@ -26,15 +27,18 @@ pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Optio
     let progress = options.progress.as_deref().unwrap_or(&quiet);
     let threads = options.threads.max(1);
 
-    // The hash needs every byte in order: it runs ahead beside the rest, which finds the bytes in memory then.
-    let (hash, merged) = thread::scope(|scope| {
-        let hash = scope.spawn(|| input.xxh3());
-        let merged = measure(input, format, options, threads, progress);
-        (hash.join(), merged)
+    // The hash needs every byte in order: it runs ahead beside the rest, which finds the bytes in memory then. Nobody
+    // waits for the hash of a file that is bad.
+    let stop = AtomicBool::new(false);
+    let (hash, measured) = thread::scope(|scope| {
+        let hash = scope.spawn(|| input.xxh3_unless(&stop));
+        let measured = measure(input, format, options, threads, progress);
+        stop.store(measured.is_err(), Ordering::Relaxed);
+        (hash.join(), measured)
     });
-    let (nodes, merged, bins) = merged.map_err(named)?;
+    let (nodes, merged, bins) = measured.map_err(named)?;
     let hash = match hash {
-        Ok(hash) => hash,
+        Ok(hash) => hash.expect("it is stopped for errors alone"),
         Err(panic) => std::panic::resume_unwind(panic),
     };
     let found = Found { input, format, hash, nodes: &nodes, merged, bins, threads, started };

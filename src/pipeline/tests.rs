@@ -20,6 +20,10 @@ const PER_PIECE: usize = 1000;
 struct Lattice {
     /// Pieces of elements that fail.
     bad: &'static [u64],
+    /// Pieces of nodes that fail.
+    bad_nodes: &'static [u64],
+    /// The piece of nodes that panics.
+    panics: Option<u64>,
     /// Whether element pieces come before node pieces.
     elements_first: bool,
 }
@@ -27,6 +31,8 @@ struct Lattice {
 struct Layout {
     source: Arc<Source>,
     bad: &'static [u64],
+    bad_nodes: &'static [u64],
+    panics: Option<u64>,
 }
 
 impl Format for Lattice {
@@ -46,7 +52,8 @@ impl Format for Lattice {
         false
     }
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
-        let layout = Arc::new(Layout { source: Arc::clone(&input.source), bad: self.bad });
+        let Lattice { bad, bad_nodes, panics, .. } = *self;
+        let layout = Arc::new(Layout { source: Arc::clone(&input.source), bad, bad_nodes, panics });
         let pieces =
             |count: u64| (0..count).step_by(PER_PIECE).map(move |k| k..(k + PER_PIECE as u64).min(count));
         let nodes = |out: &mut dyn Outline| {
@@ -70,6 +77,12 @@ impl NodeLayout for Layout {
         &self.source
     }
     fn decode(&self, span: Range<u64>, out: &mut NodeBatch) -> Result<()> {
+        let number = span.start / PER_PIECE as u64;
+        assert_ne!(self.panics, Some(number), "as the test asks for");
+        if self.bad_nodes.contains(&number) {
+            out.at = Spot::Binary(span.start);
+            return Err(Error::malformed("a node", "noise"));
+        }
         for k in span {
             let at = [k % (SIDE + 1), k / (SIDE + 1) % (SIDE + 1), k / (SIDE + 1).pow(2)].map(|i| i as f64);
             // Bent a little, so that no two elements are alike.
@@ -106,6 +119,8 @@ impl ElementLayout for Layout {
     }
 }
 
+const SOUND: Lattice = Lattice { bad: &[], bad_nodes: &[], panics: None, elements_first: false };
+
 fn lattice(format: &'static Lattice, threads: usize, memory: u64) -> Result<Summary> {
     let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
     file.write_all(&[7; 100]).expect("room for it");
@@ -123,8 +138,8 @@ fn text(mut summary: Summary) -> String {
 
 #[test]
 fn the_summary_does_not_depend_on_threads_or_memory() {
-    static FORMAT: Lattice = Lattice { bad: &[], elements_first: false };
-    static TURNED: Lattice = Lattice { bad: &[], elements_first: true };
+    static FORMAT: Lattice = SOUND;
+    static TURNED: Lattice = Lattice { elements_first: true, ..SOUND };
     let first = lattice(&FORMAT, 1, 256 << 20).expect("a sound mesh");
     assert_eq!(first.nodes.count, (SIDE + 1).pow(3));
     assert_eq!(first.nodes.unused, 0);
@@ -142,10 +157,28 @@ fn the_summary_does_not_depend_on_threads_or_memory() {
 
 #[test]
 fn the_first_bad_piece_in_the_file_gives_the_error() {
-    static FORMAT: Lattice = Lattice { bad: &[3, 4, 9], elements_first: false };
+    static FORMAT: Lattice = Lattice { bad: &[3, 4, 9], ..SOUND };
     for run in 0..60 {
         let error = lattice(&FORMAT, 1 + run % 7, 1 << 20).expect_err("piece 3 is bad");
         assert_eq!(error.place(), Some(At::Byte(3 * PER_PIECE as u64)), "{error}");
         assert_eq!(error.format(), Some("lattice"));
+    }
+}
+
+/// There are far more pieces of nodes than batches: whoever waited for an empty one waited for ever.
+#[test]
+fn a_bad_node_ends_the_run_however_many_pieces_follow() {
+    static FORMAT: Lattice = Lattice { bad_nodes: &[2, 5], ..SOUND };
+    for run in 0..60 {
+        let error = lattice(&FORMAT, 1 + run % 7, 1 << 20).expect_err("piece 2 is bad");
+        assert_eq!(error.place(), Some(At::Byte(2 * PER_PIECE as u64)), "{error}");
+    }
+}
+
+#[test]
+fn a_panic_among_the_nodes_ends_the_run() {
+    static FORMAT: Lattice = Lattice { panics: Some(2), ..SOUND };
+    for threads in 1..5 {
+        assert!(std::panic::catch_unwind(|| lattice(&FORMAT, threads, 1 << 20)).is_err());
     }
 }

@@ -1,7 +1,7 @@
 """Writes one mesh of every VTK cell type in every encoding that VTK's and meshio's own writers know.
 
     python3 tests/peers/vtk_family.py FOLDER          all of them (hundreds)
-    python3 tests/peers/vtk_family.py FOLDER small    the few small ones of tests/meshes/vtk
+    python3 tests/peers/vtk_family.py FOLDER small    the few small ones of tests/meshes/vtk and vtu
 
 The folder then has the files and `expected.jsonl`: for each file the number of points, of measured cells by shape, of
 counted cells, and a checksum of the corners. Coordinates are multiples of 1/8, so that no encoding rounds them.

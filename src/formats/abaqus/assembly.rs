@@ -64,11 +64,6 @@ pub(super) struct Instance {
 }
 
 impl Blocks {
-    /// Whether nothing is held: no nodes, no elements.
-    pub(super) fn is_empty(&self) -> bool {
-        self.nodes.is_empty() && self.elements.is_empty()
-    }
-
     /// Yields the pieces as a copy with the given scope and motion.
     pub(super) fn yield_to(
         &self,

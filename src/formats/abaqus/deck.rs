@@ -13,7 +13,7 @@ use super::points::{Row, frame, motion, points};
 use super::types::{self, Kind};
 use crate::error::{Error, Result, excerpt};
 use crate::formats::{Outline, text};
-use crate::input::{Input, Source};
+use crate::input::{Input, Source, Spot};
 
 /// Keywords that make nodes or elements out of others, or fetch them from elsewhere.
 const UNEXPANDED: [&str; 8] =
@@ -39,7 +39,30 @@ pub(super) struct Deck<'a> {
     open: Open,
     /// The last keyword.
     place: Option<Place>,
-    found: bool,
+    seen: Seen,
+}
+
+/// What a deck must have to be a mesh. One that was cut off among its nodes has no elements.
+#[derive(Default)]
+struct Seen {
+    nodes: bool,
+    elements: bool,
+}
+
+impl Seen {
+    fn note(&mut self, blocks: &Blocks) {
+        self.nodes |= !blocks.nodes.is_empty();
+        self.elements |= !blocks.elements.is_empty();
+    }
+
+    /// The keyword whose data are not there.
+    fn missing(&self) -> Option<&'static str> {
+        match self {
+            Seen { nodes: false, .. } => Some("NODE"),
+            Seen { elements: false, .. } => Some("ELEMENT"),
+            _ => None,
+        }
+    }
 }
 
 /// Whose the data are.
@@ -83,7 +106,7 @@ impl<'a> Deck<'a> {
             frame: Affine::IDENTITY,
             open: Open::Nothing,
             place: None,
-            found: false,
+            seen: Seen::default(),
         }
     }
 
@@ -180,7 +203,7 @@ impl<'a> Deck<'a> {
     /// Yields what need not wait.
     fn flush(&mut self) -> Result<()> {
         if self.parts.is_empty() {
-            self.found |= !self.outside.is_empty();
+            self.seen.note(&self.outside);
             std::mem::take(&mut self.outside).yield_to(self.out, 0, Affine::IDENTITY, None)?;
         }
         Ok(())
@@ -299,17 +322,19 @@ impl<'a> Deck<'a> {
             copies.push((&self.parts[*part].blocks, own, *motion));
         }
         for (number, (blocks, own, motion)) in copies.into_iter().enumerate() {
-            self.found |= !(blocks.is_empty() && own.is_empty());
+            self.seen.note(blocks);
+            self.seen.note(own);
             blocks.yield_to(self.out, scope(number), motion, None)?;
             own.yield_to(self.out, scope(number), motion, None)?;
         }
-        self.found |= !self.outside.is_empty();
+        self.seen.note(&self.outside);
         let scopes = Arc::new(self.scopes);
         let instances = Some(&scopes).filter(|scopes| !scopes.is_empty());
         self.outside.yield_to(self.out, 0, Affine::IDENTITY, instances)?;
-        if !self.found {
-            let error = Error::malformed("a mesh", "a deck that has no *NODE data");
-            return Err(error.in_file(self.input.source.path()));
+        if let Some(missing) = self.seen.missing() {
+            let source = &self.input.source;
+            let error = Error::malformed("a mesh", format!("a deck that has no *{missing} data"));
+            return Err(source.place(error, Spot::Text(source.len())));
         }
         Ok(())
     }

@@ -20,9 +20,8 @@ mod types;
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::formats::{ElementLayout, Format, HEAD_BYTES, NodeLayout, Outline, Piece};
+use crate::formats::{Format, HEAD_BYTES, Outline};
 use crate::input::{Input, Sibling, Siblings, Source, Spot};
-use crate::mesh::ElementType;
 
 use deck::Deck;
 use keywords::{BYTE_ORDER_MARK, Keyword, Scanner};
@@ -56,40 +55,11 @@ impl Format for Abaqus {
             let error = Error::malformed("text of one byte a character, as ASCII or UTF-8", "UTF-16");
             return Err(input.source.place(error, Spot::Binary(0)));
         }
-        let mut out = NotesElements { out, any: false };
-        let mut deck = Deck::new(input, &mut out);
+        let mut deck = Deck::new(input, out);
         let mut siblings = Siblings::new(input);
         let main = siblings.main();
         read(&mut deck, &mut siblings, &main)?;
-        deck.finish()?;
-        if !out.any {
-            // A deck has no end mark: one without elements was cut off, or is a part of another.
-            let error = Error::malformed("*ELEMENT data", "the end of the file");
-            return Err(input.source.place(error, Spot::Text(input.source.len())));
-        }
-        Ok(())
-    }
-}
-
-/// Passes everything on and notes whether there was any element.
-struct NotesElements<'a> {
-    out: &'a mut dyn Outline,
-    any: bool,
-}
-
-impl Outline for NotesElements<'_> {
-    fn nodes(&mut self, piece: Piece<dyn NodeLayout>) -> Result<()> {
-        self.out.nodes(piece)
-    }
-
-    fn elements(&mut self, piece: Piece<dyn ElementLayout>) -> Result<()> {
-        self.any = true;
-        self.out.elements(piece)
-    }
-
-    fn count(&mut self, kind: &ElementType, count: u64) -> Result<()> {
-        self.any = true;
-        self.out.count(kind, count)
+        deck.finish()
     }
 }
 

@@ -78,13 +78,29 @@ impl Role {
 /// Where an array stands, before the scratch file is complete.
 #[derive(Debug, Clone, Copy)]
 pub struct Stored {
-    /// In scratch, not in the mesh file.
-    pub in_scratch: bool,
-    /// Its first byte there.
+    /// Where it came from.
+    pub origin: Origin,
+    /// Its first byte in the mesh file, or in scratch if it was unpacked.
     pub at: u64,
     pub number: Number,
     pub endian: Endian,
     pub count: u64,
+}
+
+/// Where an array came from; errors about its numbers name that place.
+#[derive(Debug, Clone, Copy)]
+pub enum Origin {
+    /// It stands in the mesh file as it is.
+    File,
+    /// It was unpacked from text: the byte where that starts, and the byte of scratch of its first number.
+    Text {
+        /// In the mesh file.
+        from: u64,
+        /// In scratch.
+        base: u64,
+    },
+    /// It was unpacked from what the tag at this byte holds.
+    Tag(u64),
 }
 
 /// What has been unpacked of a file so far. All of it goes to one scratch file: a mesh may have very many pieces.
@@ -142,7 +158,7 @@ pub struct Stores {
 impl Stores {
     /// The array that was stored.
     pub fn array(&self, stored: Stored, role: Role) -> Result<Array> {
-        let source = if stored.in_scratch { &self.scratch } else { &self.file };
+        let source = if matches!(stored.origin, Origin::File) { &self.file } else { &self.scratch };
         check_fits(source, &stored, role)?;
         Ok(Array { source: Arc::clone(source), stored })
     }
@@ -215,12 +231,15 @@ impl Array {
         self
     }
 
-    /// Where number `index` stands, if it stands in the mesh file.
+    /// Where number `index` stands in the mesh file, or the tag that holds it.
+    #[inline]
     pub fn spot(&self, index: u64) -> Spot {
-        if self.stored.in_scratch {
-            return Spot::Unknown;
+        let at = self.stored.at + index * self.width();
+        match self.stored.origin {
+            Origin::File => Spot::Binary(at),
+            Origin::Text { from, base } => Spot::Token { from, number: (at - base) / self.width() },
+            Origin::Tag(at) => Spot::Text(at),
         }
-        Spot::Binary(self.stored.at + index * self.width())
     }
 
     /// Replaces `out` with the whole numbers of `range`. Negative ones come out as numbers over [`i64::MAX`].

@@ -7,7 +7,7 @@ use crate::formats::binary::Endian;
 use crate::formats::text::{self, LineReader};
 use crate::input::{Input, Spot};
 
-use super::array::{Number, Role, Stored, Unpacked};
+use super::array::{Number, Origin, Role, Stored, Unpacked};
 
 /// Unpacks the `count` numbers between blanks at the start of `range`, or as many as stand before the next `<` where
 /// there is no count. Gives the array and the byte at which it ended.
@@ -20,7 +20,7 @@ pub fn unpack(
     out: &mut Unpacked<'_>,
 ) -> Result<(Stored, u64)> {
     let number = role.unpacked(declared);
-    let at = out.len();
+    let (from, at) = (range.start, out.len());
     let most = count.unwrap_or(u64::MAX);
     let end = match number {
         Number::F32 => run(input, range, most, "a coordinate", out, |token| {
@@ -45,7 +45,8 @@ pub fn unpack(
         let expected = format!("{count} numbers ({}), of which {found} are there", role.name());
         return Err(input.source.malformed_text(end, expected));
     }
-    Ok((Stored { in_scratch: true, at, number, endian: Endian::Little, count: found }, end))
+    let origin = Origin::Text { from, base: at };
+    Ok((Stored { origin, at, number, endian: Endian::Little, count: found }, end))
 }
 
 /// Unpacks up to `most` numbers as `convert` says; gives the byte after the last one, or of the `<` or the end.
@@ -89,7 +90,10 @@ pub fn skip(input: &Input, range: Range<u64>, count: u64) -> Result<u64> {
         left = left.saturating_sub(1);
         Ok(more)
     })?;
-    if left > 0 { Err(input.source.truncated(format!("{left} more values"))) } else { Ok(end) }
+    if left > 0 {
+        return Err(input.source.malformed_text(end, format!("{left} more values")));
+    }
+    Ok(end)
 }
 
 /// Goes over `count` lines after the one of byte `at`; gives the byte after the last one.
@@ -98,7 +102,7 @@ pub fn skip_lines(input: &Input, at: u64, count: u64) -> Result<u64> {
     lines.next_line()?;
     for left in (1..=count).rev() {
         if lines.next_line()?.is_none() {
-            return Err(input.source.truncated(format!("{left} more lines")));
+            return Err(input.source.malformed_text(lines.position(), format!("{left} more lines")));
         }
     }
     Ok(lines.position())

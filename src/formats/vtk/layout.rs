@@ -147,18 +147,18 @@ impl Cells {
     }
 
     fn check(&self) -> Result<()> {
-        let wrong = |what: &str, expected: u64, found: u64| {
+        let wrong = |what: &str, expected: u64, found: u64, spot: Spot| {
             let error = Error::malformed(format!("{expected} {what}"), format!("{found}"));
-            Err(self.file.place(error, Spot::Unknown))
+            Err(self.file.place(error, spot))
         };
         if let Types::Each(types) = &self.types
             && types.len() != self.count
         {
-            return wrong("cell types, one for each cell", self.count, types.len());
+            return wrong("cell types, one for each cell", self.count, types.len(), types.spot(0));
         }
         if let Lists::Ends(ends) = &self.lists {
             if ends.len() != self.count {
-                return wrong("offsets, one for each cell", self.count, ends.len());
+                return wrong("offsets, one for each cell", self.count, ends.len(), ends.spot(0));
             }
             let mut last = Vec::new();
             ends.integers(self.count.saturating_sub(1)..self.count, &mut last);
@@ -168,6 +168,7 @@ impl Cells {
                     "entries in the connectivity, as the last offset says",
                     last,
                     self.connectivity.len(),
+                    ends.spot(self.count.saturating_sub(1)),
                 );
             }
         }

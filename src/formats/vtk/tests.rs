@@ -8,11 +8,15 @@ use crate::formats::Format;
 use crate::formats::reading::{Mesh, read};
 use crate::mesh::{Class, Shape};
 
+/// One for each of the two formats.
+fn own_folders() -> [PathBuf; 2] {
+    ["vtk", "vtu"].map(|name| Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name))
+}
+
 /// The checked-in meshes: every cell type of VTK, written by VTK's own writers in several encodings.
 fn own() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/vtk");
-    let mut files: Vec<_> =
-        std::fs::read_dir(folder).expect("tests/meshes/vtk").flatten().map(|e| e.path()).collect();
+    let entries = own_folders().into_iter().flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
+    let mut files: Vec<_> = entries.flatten().map(|e| e.path()).collect();
     files.retain(|file| file.extension().is_some_and(|e| e == "vtk" || e == "vtu"));
     files.sort();
     assert!(files.len() >= 8, "{files:?}");
@@ -101,8 +105,7 @@ fn what_vtk_and_meshio_write_is_read() {
 
 #[test]
 fn own_files_are_read() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/vtk");
-    assert_eq!(check_folder(&folder), own().len());
+    assert_eq!(own_folders().iter().map(|folder| check_folder(folder)).sum::<usize>(), own().len());
 }
 
 type Shapes = &'static [(&'static str, usize)];

@@ -9,7 +9,7 @@ use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
 use crate::mesh::Shape;
 
-use super::array::{Number, Role, Stored, Stores, Unpacked, check_fits};
+use super::array::{Number, Origin, Role, Stored, Stores, Unpacked, check_fits};
 use super::ascii;
 use super::layout::{Cells, Lists, Points, Types};
 use super::markup::{Tag, Tags};
@@ -288,8 +288,13 @@ impl Piece {
     }
 
     fn unpack(&self, input: &Input, file: &File, out: &mut Unpacked<'_>) -> Result<Grid> {
-        let nothing =
-            Stored { in_scratch: false, at: 0, number: Number::U8, endian: Endian::Little, count: 0 };
+        let nothing = Stored {
+            origin: Origin::Tag(self.at),
+            at: 0,
+            number: Number::U8,
+            endian: Endian::Little,
+            count: 0,
+        };
         let mut arrays = [nothing; 4];
         for (role, stored) in ROLES.into_iter().zip(&mut arrays) {
             let count = match role {
@@ -333,7 +338,7 @@ impl DataArray {
         };
         let (number, endian, width) = (self.number, file.header.endian, self.number.width());
         let expected = count.map(|count| count.saturating_mul(width));
-        let mut stored = Stored { in_scratch: true, at: out.len(), number, endian, count: 0 };
+        let mut stored = Stored { origin: Origin::Tag(self.at), at: out.len(), number, endian, count: 0 };
         if let Some(compressor) = file.compressor {
             unpack_blocks(input, &mut bytes, file.header, compressor, expected, out)?;
             stored.count = whole(out.len() - stored.at, width)?;
@@ -347,7 +352,7 @@ impl DataArray {
         if bytes.is_base64() {
             bytes.copy(len, out)?;
         } else {
-            stored = Stored { in_scratch: false, at: bytes.position(), ..stored };
+            stored = Stored { origin: Origin::File, at: bytes.position(), ..stored };
             check_fits(source, &stored, role)?;
         }
         Ok(stored)

@@ -41,17 +41,18 @@ fn includes_that_are_refused() {
 
 #[test]
 fn errors_name_the_line_and_what_stands_there() {
+    let nodes = |lines: &str| format!("*NODE\n{lines}*ELEMENT,TYPE=MASS\n1,1\n");
     let four = |rest: &str| format!("{SQUARE}{rest}");
     let rows: Vec<(String, &str)> = vec![
         ("1,2,3\n".into(), "line 1: expected a keyword line, as *HEADING or *NODE, found \"1,2,3\""),
-        ("*NODE\n1,x\n".into(), "line 2: expected a number, found \"x\""),
-        ("*NODE\n\n-1,0\n".into(), "line 3: expected a node number up to 1099511627775, found \"-1,0\""),
-        ("*NODE\n0,0\n".into(), "line 2: expected a node number from 1, found \"0,0\""),
-        ("*NODE\n1099511627776,0\n".into(), "line 2: expected a node number up to 1099511627775"),
-        ("*NODE\n1 0.0 0.0\n".into(), "line 2: expected a comma or the end of the line, found \"0.0 0.0\""),
-        ("*NODE\n1,0,0,0,0,0,1,5\n".into(), "line 2: expected at most a number, three coordinates"),
-        ("*NODE\n1,<r>\n".into(), "line 2: the parameter in \"<r>\" is not substituted"),
-        ("*NODE\n1,0\n2,1e999\n".into(), "line 3: expected finite coordinates"),
+        (nodes("1,x\n"), "line 2: expected a number, found \"x\""),
+        (nodes("\n-1,0\n"), "line 3: expected a node number up to 1099511627775, found \"-1,0\""),
+        (nodes("0,0\n"), "line 2: expected a node number from 1, found \"0,0\""),
+        (nodes("1099511627776,0\n"), "line 2: expected a node number up to 1099511627775"),
+        (nodes("1 0.0 0.0\n"), "line 2: expected a comma or the end of the line, found \"0.0 0.0\""),
+        (nodes("1,0,0,0,0,0,1,5\n"), "line 2: expected at most a number, three coordinates"),
+        (nodes("1,<r>\n"), "line 2: the parameter in \"<r>\" is not substituted"),
+        (nodes("1,0\n2,1e999\n"), "line 3: expected finite coordinates"),
         ("*NODE,SYSTEM=X\n1,0\n".into(), "line 1: expected SYSTEM=R, SYSTEM=C or SYSTEM=S, found SYSTEM=X"),
         (
             four("*ELEMENT,TYPE=S4\n1,1,2,3\n"),
@@ -96,8 +97,12 @@ fn errors_name_the_line_and_what_stands_there() {
             "line 10: expected points that are apart",
         ),
         (format!("{PART}*INSTANCE,NAME=I,PART=Q\n1,2,3\n1,y\n"), "line 12: expected a number, found \"y\""),
-        ("*HEADING\nnothing\n*STEP\n".into(), "expected a mesh, found a deck that has no *NODE data"),
-        ("*NODE\n** none\n*ELEMENT,TYPE=S4\n".into(), "expected a mesh, found a deck that has no *NODE data"),
+        ("*HEADING\nnothing\n*STEP\n".into(), "line 4: expected a mesh, found a deck that has no *NODE data"),
+        (
+            "*NODE\n** none\n*ELEMENT,TYPE=S4\n".into(),
+            "line 4: expected a mesh, found a deck that has no *NODE data",
+        ),
+        ("*NODE\n1,0\n".into(), "line 3: expected a mesh, found a deck that has no *ELEMENT data"),
         (
             "*NODE\n1,0,0,0\n*ELEMENT,TYPE=MASS\n1,1".into(),
             "line 4: expected an end of line after the last data line",

@@ -97,7 +97,7 @@ fn instances_are_copies_with_numbers_of_their_own() {
 #[test]
 fn frames_hold_until_the_next_and_within_their_part() {
     let text = "*SYSTEM\n0,0,1\n*NODE\n1,1,0\n*SYSTEM\n*NODE,SYSTEM=C\n2,2,90,3\n*SYSTEM\n0,0,0,0,1,0\n0,1,1\n*NODE\n3,1,2,3\n\
-                *PART,NAME=P\n*NODE\n1,1,1,1\n*END PART\n";
+                *PART,NAME=P\n*NODE\n1,1,1,1\n*ELEMENT,TYPE=MASS\n1,1\n*END PART\n";
     let mesh = mesh(text);
     let at = |id| mesh.nodes.rows()[mesh.nodes.row(id).expect("defined") as usize];
     assert_eq!(at(1), [1.0, 0.0, 1.0]);

@@ -122,7 +122,7 @@ impl Reader<'_> {
             let head = self.input.source.peek(self.at..self.at + 8);
             let width = match head.first() {
                 Some(byte) => 8 >> (byte >> 6),
-                None => return Err(self.input.source.truncated("a string")),
+                None => return Err(self.truncated("a string")),
             };
             let mut bytes = [0; 8];
             let head = &head[..head.len().min(width)];

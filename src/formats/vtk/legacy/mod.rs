@@ -81,16 +81,17 @@ const POLYGONAL: [(&str, u64); 4] = [("VERTICES", 2), ("LINES", 4), ("POLYGONS",
 
 impl Grid {
     fn outline(self, stores: &Stores, out: &mut dyn Outline) -> Result<()> {
-        let truncated = |what: &str| stores.file.truncated(format!("the section {what}"));
-        let points = self.points.ok_or_else(|| truncated("POINTS"))?;
+        let points = self.points.expect("the reader asks for points");
         let (file, coordinates) = (stores.file.clone(), stores.array(points, Role::Coordinate)?);
         Points { file, coordinates }.outline(out)?;
         let mut first_cell = 0;
         for section in self.cells {
-            let types = match (section.code, self.types) {
-                (Some(code), _) => Types::All(code),
-                (None, Some(types)) => Types::Each(stores.array(types, Role::Code)?),
-                (None, None) => return Err(truncated("CELL_TYPES")),
+            let types = match section.code {
+                Some(code) => Types::All(code),
+                None => {
+                    let types = self.types.expect("the reader asks for types");
+                    Types::Each(stores.array(types, Role::Code)?)
+                }
             };
             let (lists, connectivity) = section.lists.open(stores, section.count)?;
             let count = section.count;
@@ -168,8 +169,14 @@ impl Reader<'_> {
                 },
             }
         }
+        if grid.points.is_none() {
+            return Err(self.truncated("the section POINTS"));
+        }
         if grid.cells.is_empty() {
-            return Err(self.input.source.truncated(format!("a section: {sections}")));
+            return Err(self.truncated(&format!("a section: {sections}")));
+        }
+        if grid.types.is_none() && !is_polygonal {
+            return Err(self.truncated("the section CELL_TYPES"));
         }
         Ok(grid)
     }
@@ -177,7 +184,7 @@ impl Reader<'_> {
     fn points(&mut self) -> Result<Stored> {
         let count = self.count("the number of points")?;
         let Some(numbers) = count.checked_mul(3) else {
-            return Err(self.input.source.truncated(format!("{count} points")));
+            return Err(self.truncated(&format!("{count} points")));
         };
         let number = self.number(Role::Coordinate)?;
         self.numbers(number, Role::Coordinate, numbers)

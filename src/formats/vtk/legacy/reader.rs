@@ -6,7 +6,7 @@ use crate::formats::binary::Endian;
 use crate::formats::text::{self, LineReader};
 use crate::input::Input;
 
-use super::super::array::{Number, Role, Stored, Unpacked, check_fits};
+use super::super::array::{Number, Origin, Role, Stored, Unpacked, check_fits};
 use super::super::ascii;
 use super::Legacy;
 
@@ -28,7 +28,7 @@ impl<'i> Reader<'i> {
             Some(line) => {
                 Ok((line.at, line.bytes.trim_ascii().to_ascii_uppercase(), line.at + line.bytes.len() as u64))
             }
-            None => Err(input.source.truncated(expected)),
+            None => Err(input.source.malformed_text(input.source.len(), expected)),
         };
         let (at, magic, _) = line("\"# vtk DataFile Version\"")?;
         if !Legacy.detect(&magic) {
@@ -54,7 +54,7 @@ impl<'i> Reader<'i> {
             return Ok(stored);
         }
         self.end_line()?;
-        let stored = Stored { in_scratch: false, at: self.at, number, endian: Endian::Big, count };
+        let stored = Stored { origin: Origin::File, at: self.at, number, endian: Endian::Big, count };
         self.at = check_fits(&self.input.source, &stored, role)?;
         Ok(stored)
     }
@@ -106,8 +106,13 @@ impl<'i> Reader<'i> {
     pub fn word(&mut self, expected: &str) -> Result<Word> {
         match self.next_word()? {
             Some(word) => Ok(word),
-            None => Err(self.input.source.truncated(expected)),
+            None => Err(self.truncated(expected)),
         }
+    }
+
+    /// The error of a file that ends where `expected` should follow.
+    pub fn truncated(&self, expected: &str) -> Error {
+        self.malformed(self.input.source.len(), expected)
     }
 
     /// The next word, which must be `expected`.

@@ -1,0 +1,104 @@
+//! Meshes of other people, which may not be copied: counts of other readers, or a refusal that names its reason.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use meshgauge::error::{Error, Kind};
+use meshgauge::formats::FORMATS;
+use meshgauge::score;
+
+use crate::options;
+
+/// The folder of the corpus, or nothing, said aloud.
+pub fn corpus() -> Option<PathBuf> {
+    let folder = std::env::var_os("MESHGAUGE_CORPUS").map(PathBuf::from);
+    if folder.is_none() {
+        eprintln!("skipped: MESHGAUGE_CORPUS names no folder");
+    }
+    folder
+}
+
+/// Where the manifest counts otherwise than a mesh has it: nodes, elements.
+const COUNTED_OTHERWISE: &[(&str, u64, u64)] = &[
+    // Parts are in the file once, and in the assembly as often as they have instances.
+    ("abaqus/cae_multi_instance_rivet.inp", 808, 421),
+    ("compressed/rivet_two_members.inp.gz", 808, 421),
+    // Its reader leaves out four points.
+    ("gmsh/gmsh_hybrid_part.msh", 401, 804),
+];
+
+/// What a mesh of a format that is read is refused for.
+const REFUSED: &[(&str, &str)] = &[
+    // What a deck includes: data lines without a keyword.
+    ("abaqus/synthetic_torture/nodes_b.inp", "expected a mesh of a known format"),
+    ("vtu/vtkio_hexahedron_parallel.pvtu", "score the pieces"),
+];
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for path in fs::read_dir(folder).expect("a folder of the corpus").map(|e| e.expect("an entry").path()) {
+        if path.is_dir() { files.extend(self::files(&path)) } else { files.push(path) }
+    }
+    files.sort();
+    files
+}
+
+/// Nodes and elements of a row: `220 n; line:56 triangle:382`, `expected 20 n; ...`, `54 n; 100 cells`.
+fn counts(cell: &str) -> Option<(u64, u64)> {
+    let (nodes, elements) = cell.trim_start_matches("expected ").split_once(" n; ")?;
+    let after_colon = |word: &str| word.rsplit_once(':').and_then(|(_, count)| count.parse::<u64>().ok());
+    let listed: u64 = elements.split_whitespace().filter_map(after_colon).sum();
+    let told = elements.split_whitespace().next().and_then(|word| word.parse().ok());
+    Some((nodes.parse().ok()?, told.unwrap_or(listed)))
+}
+
+fn is_unknown(error: &Error) -> bool {
+    matches!(error.kind(), Kind::UnknownFormat(text) if FORMATS.iter().all(|f| text.contains(f.name())))
+}
+
+#[test]
+fn meshes_of_known_formats_have_the_counts_of_the_manifest() {
+    let Some(corpus) = corpus() else { return };
+    let manifest = fs::read_to_string(corpus.join("MANIFEST.md")).expect("the manifest");
+    let mut scored = 0;
+    for row in manifest.lines().filter(|line| line.starts_with("| ")) {
+        let cells: Vec<_> = row.split(" | ").map(str::trim).collect();
+        let name = cells[0].trim_start_matches("| ");
+        let known = FORMATS.iter().any(|format| name.starts_with(&format!("{}/", format.name())));
+        if !(known || name.starts_with("compressed/")) {
+            continue;
+        }
+        match (score(&corpus.join(name), &options()), REFUSED.iter().find(|row| row.0 == name)) {
+            (Err(error), Some((_, reason))) => assert!(error.to_string().contains(reason), "{error}"),
+            (Err(error), None) if name.ends_with(".mphtxt.zst") => assert!(is_unknown(&error), "{error}"),
+            (Err(error), None) => panic!("{error}"),
+            (Ok(_), Some((_, reason))) => panic!("{name}: scored, not refused: {reason}"),
+            (Ok(summary), None) => {
+                let other = COUNTED_OTHERWISE.iter().find(|row| row.0 == name).map(|row| (row.1, row.2));
+                let expected = other.or_else(|| counts(cells[2]));
+                assert_eq!(Some((summary.nodes.count, summary.elements.count)), expected, "{name}: {row}");
+                scored += 1;
+            }
+        }
+    }
+    assert!(scored >= 70, "{scored}");
+}
+
+#[test]
+fn whatever_else_is_no_mesh_of_a_known_format() {
+    let Some(corpus) = corpus() else { return };
+    let mut refused = 0;
+    for file in files(&corpus) {
+        let name = file.strip_prefix(&corpus).expect("it was found there").to_string_lossy().into_owned();
+        let known = FORMATS.iter().any(|format| name.starts_with(&format!("{}/", format.name())));
+        if known || name.starts_with("compressed/") {
+            continue;
+        }
+        match score(&file, &options()) {
+            Err(error) if is_unknown(&error) => refused += 1,
+            Err(error) => panic!("{name}: refused for another reason: {error}"),
+            Ok(summary) => panic!("{name}: taken for {}", summary.mesh.format),
+        }
+    }
+    assert!(refused >= 100, "{refused}");
+}

@@ -1,0 +1,107 @@
+//! Every format against real meshes: what others count in them, that the content alone decides which format it is, and
+//! that one mesh gives one result whatever it is written in.
+
+#![expect(clippy::disallowed_methods, reason = "small meshes of known size are read whole, to be rewritten")]
+
+mod corpus;
+mod mixed;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use meshgauge::formats::{FORMATS, HEAD_BYTES};
+use meshgauge::mesh::Shape::{self, Hexahedron, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
+use meshgauge::{Options, Summary, score};
+
+type Shapes = &'static [(Shape, u64)];
+
+const PIT: Shapes = &[(Triangle, 382)];
+const MIXED: Shapes = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
+/// Two of each.
+const LINEAR: Shapes =
+    &[(Triangle, 2), (Quadrilateral, 2), (Tetrahedron, 2), (Pyramid, 2), (Wedge, 2), (Hexahedron, 2)];
+/// Every cell type of VTK.
+const ALL: Shapes =
+    &[(Triangle, 7), (Quadrilateral, 9), (Tetrahedron, 4), (Pyramid, 3), (Wedge, 6), (Hexahedron, 7)];
+
+/// Format, file, nodes, measured elements, elements that no measure is defined for.
+const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
+    ("abaqus", "gmsh_pit2d_o2.inp", 821, PIT, 56),
+    ("gmsh", "mixed_hex_prism_41.msh", 54, MIXED, 0),
+    ("gmsh", "pit2d_22_ascii.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_22_bin.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_40_ascii.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_41_ascii.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_41_bin.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_41_parametric_bin.msh", 220, PIT, 56),
+    ("gmsh", "pit2d_o2_41_ascii.msh", 821, PIT, 56),
+    ("vtk", "all_42_ascii.vtk", 452, ALL, 14),
+    ("vtk", "all_51_binary.vtk", 452, ALL, 14),
+    ("vtk", "gmsh_mixed_wedge.vtk", 54, MIXED, 0),
+    ("vtk", "linear_42_binary.vtk", 55, LINEAR, 0),
+    ("vtk", "linear_51_ascii.vtk", 55, LINEAR, 0),
+    ("vtu", "all_raw_lz4.vtu", 452, ALL, 14),
+    ("vtu", "linear_ascii.vtu", 55, LINEAR, 0),
+    ("vtu", "linear_base64_zlib.vtu", 55, LINEAR, 0),
+    ("vtu", "linear_inline_lzma.vtu", 55, LINEAR, 0),
+    ("vtu", "linear_inline_none.vtu", 55, LINEAR, 0),
+    ("vtu", "linear_raw_none.vtu", 55, LINEAR, 0),
+];
+
+fn folder(format: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(format)
+}
+
+fn options() -> Options {
+    Options { threads: 2, run_info: false, ..Options::default() }
+}
+
+#[track_caller]
+fn summary(path: &Path) -> Summary {
+    score(path, &options()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn every_format_has_real_meshes_with_known_counts() {
+    for format in FORMATS {
+        let entries =
+            fs::read_dir(folder(format.name())).unwrap_or_else(|e| panic!("{}: {e}", format.name()));
+        let names = entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
+        let meshes: BTreeSet<_> = names.filter(|name| !name.ends_with(".jsonl")).collect();
+        let rows = OWN.iter().filter(|row| row.0 == format.name());
+        assert_eq!(meshes, rows.map(|row| row.1.to_owned()).collect(), "{}", format.name());
+        assert!(!meshes.is_empty(), "{}", format.name());
+    }
+    for (format, name, nodes, measured, others) in OWN {
+        let found = summary(&folder(format).join(name));
+        assert_eq!((found.mesh.format.as_str(), found.nodes.count), (*format, *nodes), "{name}");
+        let shapes: Vec<_> = found.shapes.iter().map(|(shape, found)| (*shape, found.count)).collect();
+        assert_eq!(shapes, *measured, "{name}");
+        assert_eq!(found.elements.not_measured.values().sum::<u64>(), *others, "{name}");
+        let total = measured.iter().map(|row| row.1).sum::<u64>() + others;
+        assert_eq!(found.elements.count, total, "{name}");
+        assert_eq!(found.elements.by_type.values().sum::<u64>(), total, "{name}");
+    }
+}
+
+#[test]
+fn the_content_decides_whatever_the_name_says() {
+    let elsewhere = tempfile::tempdir().expect("a temporary folder");
+    for (format, name, nodes, ..) in OWN {
+        let bytes = fs::read(folder(format).join(name)).expect("readable");
+        for wrong in ["x.inp", "x.txt", "x.msh.gz", "x"] {
+            let path = elsewhere.path().join(wrong);
+            fs::write(&path, &bytes).expect("written");
+            let found = summary(&path);
+            assert_eq!(
+                (found.mesh.format.as_str(), found.nodes.count),
+                (*format, *nodes),
+                "{name} as {wrong}"
+            );
+        }
+        let head = &bytes[..bytes.len().min(HEAD_BYTES)];
+        let takers: Vec<_> = FORMATS.iter().filter(|f| f.detect(head)).map(|f| f.name()).collect();
+        assert_eq!(takers, [*format], "{name}");
+    }
+}
