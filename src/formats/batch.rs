@@ -3,6 +3,19 @@
 use crate::error::{Error, Result};
 use crate::input::Spot;
 
+/// Beyond this volumes, and sums of them, could be infinite.
+const LARGEST_COORDINATE: f64 = 1e90;
+
+#[cold]
+fn out_of_range(point: [f64; 3]) -> Error {
+    let expected = if point.iter().all(|x| x.is_finite()) {
+        "coordinates from -1e90 to 1e90"
+    } else {
+        "finite coordinates"
+    };
+    Error::malformed(expected, format!("{point:?}"))
+}
+
 /// The nodes of one piece, in file order.
 #[derive(Debug, Default)]
 pub struct NodeBatch {
@@ -23,9 +36,10 @@ impl NodeBatch {
     /// Adds a node whose number is its position in the file, from 0.
     #[inline]
     pub fn push_next(&mut self, point: [f64; 3]) -> Result<()> {
-        // One test for three: infinity times zero and NaN times zero are NaN.
-        if (point[0] * 0.0 + point[1] * 0.0 + point[2] * 0.0) != 0.0 {
-            return Err(Error::malformed("finite coordinates", format!("{point:?}")));
+        // NaN is not under anything.
+        let [x, y, z] = point.map(|x| x.abs() <= LARGEST_COORDINATE);
+        if !(x & y & z) {
+            return Err(out_of_range(point));
         }
         self.rows.push(point);
         Ok(())
@@ -54,14 +68,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coordinates_that_are_not_finite_are_refused() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+    fn coordinates_that_are_not_finite_or_too_large_are_refused() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1.1e90, -1e308] {
             for axis in 0..3 {
-                let mut point = [1e300, -1e300, 0.0];
+                let mut point = [1e90, -1e90, 0.0];
                 point[axis] = bad;
                 assert!(NodeBatch::default().push_next(point).is_err());
             }
         }
-        assert!(NodeBatch::default().push_next([1e308, -1e308, 0.0]).is_ok());
+        assert!(NodeBatch::default().push_next([1e90, -1e90, 5e-324]).is_ok());
     }
 }

@@ -157,7 +157,7 @@ fn measure_summary(
         max: extremes.max,
         min: extremes.min,
         min_element: extremes.min_label,
-        mean: moments.mean[value],
+        mean: moments.mean[value].clamp(extremes.min, extremes.max),
         sd: moments.sd(value),
         quantiles: bins.spread.quantiles(extremes.min, extremes.max),
         histogram: bins.histogram.counts().to_vec(),
@@ -224,7 +224,7 @@ fn sizes(found: &Found<'_>, dimension: usize) -> Sizes {
         element_size: (size.count > 0).then(|| SizeSummary {
             min: extremes.min,
             max: extremes.max,
-            mean: size.mean[0],
+            mean: size.mean[0].clamp(extremes.min, extremes.max),
             quantiles: spread.quantiles(extremes.min, extremes.max),
         }),
     }

@@ -134,11 +134,19 @@ impl Moments {
 
     /// Standard deviation of the population.
     pub fn sd(&self, value: usize) -> f64 {
-        if self.count == 0 { 0.0 } else { (self.deviations[value] / self.count as f64).sqrt() }
+        if self.is_steady(value) { 0.0 } else { (self.deviations[value] / self.count as f64).sqrt() }
+    }
+
+    /// Whether a value does not vary; the deviations then hold rounding errors of the mean.
+    fn is_steady(&self, value: usize) -> bool {
+        self.count == 0 || self.extremes[value].min == self.extremes[value].max
     }
 
     /// Pearson's correlation of two values; `None` where one of them does not vary.
     pub fn correlation(&self, i: usize, j: usize) -> Option<f64> {
+        if self.is_steady(i) || self.is_steady(j) {
+            return None;
+        }
         let product = self.deviations[i].sqrt() * self.deviations[j].sqrt();
         let r = self.co_deviations[pair(i.min(j), i.max(j))] / product;
         r.is_finite().then(|| r.clamp(-1.0, 1.0))

@@ -177,3 +177,29 @@ fn a_needle_is_a_warning_that_names_measure_and_element() {
     let needle = |r: &&meshgauge::summary::Reason| r.rule == "npl" && r.element == Some(1) && r.value < 0.1;
     assert_eq!(found.verdict.reasons.iter().filter(needle).count(), found.verdict.reasons.len());
 }
+
+/// Sums round: the mean of equal values need not be that value.
+#[test]
+fn what_does_not_vary_has_its_own_mean_and_no_spread() {
+    for count in [3, 5, 6, 7, 11, 12, 13, 49] {
+        let mut nodes = String::from("*NODE\n");
+        let mut elements = String::from("CPS3");
+        for k in 0..count {
+            let (x, n) = (f64::from(k), 3 * k);
+            nodes.push_str(&format!("{}, {x}, 0.\n{}, {}, 0.\n{}, {x}, 1.\n", n + 1, n + 2, x + 1.0, n + 3));
+            elements.push_str(&format!("\n{}, {}, {}, {}", k + 1, n + 1, n + 2, n + 3));
+        }
+        let found = scored(&nodes, &elements);
+        let triangles = &found.shapes[&Triangle];
+        for (code, measure) in &triangles.measures {
+            assert_eq!(
+                (measure.mean, measure.max, measure.sd),
+                (measure.min, measure.min, 0.0),
+                "{count} {code}"
+            );
+        }
+        assert!(triangles.correlation.values().all(Option::is_none), "{:?}", triangles.correlation);
+        let size = found.sizes.element_size.expect("sizes");
+        assert_eq!((size.mean, size.max), (size.min, size.min), "{count}");
+    }
+}
