@@ -15,6 +15,8 @@ mod plan;
 pub(crate) mod reading;
 mod simplex;
 mod sink;
+#[cfg(test)]
+pub(crate) mod testing;
 pub mod text;
 mod vtk;
 pub mod words;

@@ -109,9 +109,9 @@ impl Counts {
 /// Number of columns after a triangle's vertices: its reference, which some leave out.
 fn reference(input: &Input, walk: &mut WordWalk<'_>) -> Result<u64> {
     walk.more();
-    let line = LineReader::new(&input.source, &input.limits, walk.at()).next_line()?.map_or(0, |line| {
-        text::tokens(line.at, line.bytes).take(4).count()
-    });
+    let line = LineReader::new(&input.source, &input.limits, walk.at())
+        .next_line()?
+        .map_or(0, |line| text::tokens(line.at, line.bytes).take(4).count());
     Ok(if line == 3 { 0 } else { 1 })
 }
 

@@ -10,7 +10,9 @@ use std::sync::{Arc, LazyLock};
 use crate::error::{Error, Result};
 use crate::formats::text::{self, LineReader};
 use crate::formats::words::Words;
-use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};
+use crate::formats::{
+    ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece,
+};
 use crate::input::{Input, Limits, Siblings, Source, Spot, mesh_name};
 use crate::mesh::{ElementType, Shape};
 
@@ -66,7 +68,8 @@ impl Format for Simplex {
     fn detect(&self, head: &[u8]) -> bool {
         let mut rows = text::lines(0, head).filter_map(|line| {
             let mut words = Words::new(0, line.bytes);
-            let row: Vec<_> = std::iter::from_fn(|| Some(words.word()).filter(|w| !w.is_empty())).take(64).collect();
+            let row: Vec<_> =
+                std::iter::from_fn(|| Some(words.word()).filter(|w| !w.is_empty())).take(64).collect();
             (!row.is_empty()).then_some(row)
         });
         let numbers = |row: &[&[u8]]| row.iter().map(|w| text::integer(w)).collect::<Option<Vec<_>>>();
@@ -104,10 +107,12 @@ impl Format for Simplex {
 
 impl Simplex {
     fn elements_table<'i>(&self, input: &'i Input) -> Result<(Arc<ElementType>, Table<'i>)> {
-        let (at, [count, nodes], table) = Table::open(&input.source, &input.limits, "elements, nodes of each")?;
+        let (at, [count, nodes], table) =
+            Table::open(&input.source, &input.limits, "elements, nodes of each")?;
         let Some(kind) = self.types.iter().find(|kind| kind.nodes as u64 == nodes) else {
             let [first, second] = [0, 1].map(|k| self.types[k].nodes);
-            let error = Error::malformed(format!("{first} or {second} nodes of each element"), format!("{nodes}"));
+            let error =
+                Error::malformed(format!("{first} or {second} nodes of each element"), format!("{nodes}"));
             return Err(input.source.place(error, Spot::Text(at)));
         };
         Ok((Arc::clone(kind), Table { count, ..table }))

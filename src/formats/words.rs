@@ -228,7 +228,8 @@ impl<'i> WordWalk<'i> {
         let rest = self.ahead(1 + 4 * len + 1).get(1..).unwrap_or_default();
         let ends = |end: usize| rest.get(end).is_none_or(|&b| is_blank(b));
         let starts = |b: &u8| b & 0xc0 != 0x80;
-        let characters = rest.iter().enumerate().filter(|(_, b)| starts(b)).nth(len).map_or(rest.len(), |c| c.0);
+        let characters =
+            rest.iter().enumerate().filter(|(_, b)| starts(b)).nth(len).map_or(rest.len(), |c| c.0);
         let found = [len, characters].into_iter().find(|&end| end <= rest.len() && ends(end));
         let Some(end) = found else {
             return Err(self.source.malformed_text(from, format!("{what}, {len} characters")));
@@ -276,8 +277,8 @@ impl<'i> WordWalk<'i> {
         Ok(())
     }
 
-    /// Passes some words, at most `most`; the last of them perhaps in part, and then `inside` says so. The error is
-    /// nothing where the file ends.
+    /// Passes some words, at most `most`; the last of them perhaps in part, and then `inside` says so. After all of them
+    /// nothing more is passed. The error is nothing where the file ends.
     fn step(
         &mut self,
         most: u64,
@@ -287,17 +288,16 @@ impl<'i> WordWalk<'i> {
         let ahead = self.ahead(STEP);
         let ahead = &ahead[..ahead.len().min(STEP)];
         let step = &ahead[..memchr::memchr(b'#', ahead).unwrap_or(ahead.len())];
-        let (ends, comment) = (ahead.is_empty(), step.len() < ahead.len());
-        let started = starts(step, *inside);
-        if ends {
+        if ahead.is_empty() {
             return Err(None);
         }
-        if started <= most {
+        let started = starts(step, *inside);
+        if started < most {
+            let comment = step.len() < ahead.len();
             *passed += started;
-            *inside = step.last().map_or(*inside, |&b| !is_blank(b)) && !comment;
+            *inside = !comment && step.last().is_some_and(|&b| !is_blank(b));
             self.at += step.len() as u64;
-            // The last word may end with the step: what follows it is not for us.
-            if comment && started < most {
+            if comment {
                 self.pass_comment();
             }
             return Ok(());

@@ -129,7 +129,10 @@ fn elements(
             let (source, encoding) = (Arc::clone(&reader.input.source), reader.encoding());
             reader.rows((count, nodes), Number::Integer, &what, |span, row| {
                 let (source, kind, first) = (Arc::clone(&source), Arc::clone(kind), found.elements + row);
-                out.elements(Piece { layout: Arc::new(Elements { source, encoding, kind, mesh, first }), span })
+                out.elements(Piece {
+                    layout: Arc::new(Elements { source, encoding, kind, mesh, first }),
+                    span,
+                })
             })?;
         }
         None => {
@@ -171,7 +174,9 @@ fn geometric_model(reader: &mut Reader<'_>, dimension: i64) -> Result<()> {
     }
     for what in lists {
         if reader.integer(&format!("0, no {what}"))? != 0 {
-            let what = format!("a COMSOL mesh of class version 8 with {what} is not read: export it without its geometric model");
+            let what = format!(
+                "a COMSOL mesh of class version 8 with {what} is not read: export it without its geometric model"
+            );
             return Err(reader.place(Error::unsupported(what)));
         }
     }
