@@ -251,6 +251,9 @@ impl<'i> WordWalk<'i> {
         let Some(words) = least.filter(|&l| l <= self.source.len() - self.at + 1).map(|l| l / 2) else {
             return Err(self.truncated(&format!("{count} {what}")));
         };
+        if words == 0 {
+            return Ok(());
+        }
         self.more();
         let (mut from, mut first, mut passed, mut inside) = (self.at, 0, 0, false);
         while passed < words {
