@@ -7,13 +7,19 @@
 mod abaqus;
 mod batch;
 pub mod binary;
+mod comsol;
 mod gmsh;
+mod nag;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
+mod simplex;
 mod sink;
+#[cfg(test)]
+pub(crate) mod testing;
 pub mod text;
 mod vtk;
+pub mod words;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -97,7 +103,16 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu];
+pub static FORMATS: &[&dyn Format] = &[
+    &gmsh::Gmsh,
+    &abaqus::Abaqus,
+    &vtk::Legacy,
+    &vtk::Vtu,
+    &comsol::Comsol,
+    &simplex::TRIANGLE,
+    &simplex::TETGEN,
+    &nag::Nag,
+];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
