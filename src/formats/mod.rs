@@ -7,12 +7,19 @@
 mod abaqus;
 mod batch;
 pub mod binary;
+#[cfg(test)]
+mod checking;
 mod gmsh;
 mod plan;
+mod medit;
+mod netgen;
 #[cfg(test)]
 pub(crate) mod reading;
+mod rows;
 mod sink;
+mod su2;
 pub mod text;
+mod ugrid;
 mod vtk;
 
 use std::ops::Range;
@@ -97,7 +104,16 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu];
+pub static FORMATS: &[&dyn Format] = &[
+    &gmsh::Gmsh,
+    &abaqus::Abaqus,
+    &vtk::Legacy,
+    &vtk::Vtu,
+    &medit::Medit,
+    &su2::Su2,
+    &netgen::Netgen,
+    &ugrid::Ugrid,
+];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
