@@ -7,17 +7,24 @@
 mod abaqus;
 mod batch;
 pub mod binary;
+#[cfg(test)]
+mod checking;
 mod comsol;
 mod gmsh;
+mod medit;
 mod nag;
+mod netgen;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
+mod rows;
 mod simplex;
 mod sink;
+mod su2;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod text;
+mod ugrid;
 mod vtk;
 pub mod words;
 
@@ -112,6 +119,10 @@ pub static FORMATS: &[&dyn Format] = &[
     &simplex::TRIANGLE,
     &simplex::TETGEN,
     &nag::Nag,
+    &medit::Medit,
+    &su2::Su2,
+    &netgen::Netgen,
+    &ugrid::Ugrid,
 ];
 
 /// The format named `name`.

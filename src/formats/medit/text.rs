@@ -1,0 +1,92 @@
+//! `.mesh`: words and numbers, whatever lines they stand on.
+
+use super::{Found, keywords};
+use crate::error::{Error, Result};
+use crate::formats::Outline;
+use crate::formats::rows::{Numbers, Table, TokenReader, outline_elements, outline_nodes};
+use crate::input::{Input, Spot};
+
+const VERSION: &[u8] = b"MeshVersionFormatted";
+
+/// Whether the first word is that of the format.
+pub(super) fn is_text(head: &[u8]) -> bool {
+    let mut rest = head.trim_ascii_start();
+    while rest.starts_with(b"#") {
+        let end = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+        rest = rest[end..].trim_ascii_start();
+    }
+    rest.get(..VERSION.len()).is_some_and(|word| word.eq_ignore_ascii_case(VERSION))
+}
+
+pub(super) fn outline(input: &Input, out: &mut dyn Outline) -> Result<()> {
+    let mut reader = TokenReader::new(input, b'#');
+    let mut found = Found::new();
+    loop {
+        let Some(word) = reader.token()? else { break };
+        let (at, name) = (word.at, word.bytes.to_ascii_lowercase());
+        if name == b"end" {
+            break;
+        }
+        let done = keyword(&mut reader, &name, &mut found, out);
+        done.map_err(|e| input.source.place(e, Spot::Text(at)))?;
+    }
+    found.check(input)
+}
+
+/// Reads what follows a keyword, which is in lower case.
+fn keyword(
+    reader: &mut TokenReader<'_>,
+    name: &[u8],
+    found: &mut Found,
+    out: &mut dyn Outline,
+) -> Result<()> {
+    if !name[0].is_ascii_alphabetic() {
+        let error = Numbers::new(0, name, b'#').unlike_here("a keyword (Vertices, Tetrahedra, End, ...)");
+        return Err(error);
+    }
+    if let Some(keyword) = keywords::by_name(name) {
+        let rows = reader.integer(&format!("the number of {}", keyword.name))?;
+        // A row a line is what everybody writes; where it is not so, numbers are left over, or too few.
+        let alone = rows > 0 && keyword.is_ambiguous();
+        let nodes = if alone { reader.tokens_of_line().saturating_sub(1) } else { 0 };
+        let kind = keyword.with_nodes(nodes).unwrap_or(keyword.usual());
+        let first = found.add_elements(keyword, rows);
+        let what = format!("rows of {}", keyword.name);
+        return outline_elements(reader, Table { what: &what, rows, extra: 1, first }, kind, out);
+    }
+    match name {
+        b"meshversionformatted" => match reader.integer("a version")? {
+            0..=4 => Ok(()),
+            other => Err(Error::unsupported(format!("MEDIT version {other} is not read (1 to 4 are)"))),
+        },
+        b"dimension" => found.set_dimension(reader.integer("a dimension, 2 or 3")?),
+        b"vertices" => {
+            let dimension = found.dimension()?;
+            let rows = reader.integer("the number of vertices")?;
+            let first = found.add_vertices(rows);
+            outline_nodes(reader, Table { what: "rows of Vertices", rows, extra: 1, first }, dimension, out)
+        }
+        _ => skip(reader, name, found),
+    }
+}
+
+/// Passes a keyword that is not read, with its numbers.
+fn skip(reader: &mut TokenReader<'_>, name: &[u8], found: &mut Found) -> Result<()> {
+    if let Some(of) = name.strip_suffix(b"ordering")
+        && let Some(keyword) = keywords::by_name(of)
+    {
+        found.ordered.push(keyword.name.to_owned());
+    }
+    let rows = reader.peek_integer()?;
+    let numbers = reader.pass_to_word()?;
+    // Where End is missing, whole rows are the only sign that the file is whole.
+    if !reader.more()
+        && let Some(rows) = rows.filter(|rows| *rows > 0)
+        && (numbers == 1 || !(numbers - 1).is_multiple_of(rows))
+    {
+        let name = String::from_utf8_lossy(name).into_owned();
+        let expected = format!("{rows} whole rows of {name}, or the keyword End");
+        return Err(reader.source.malformed_text(reader.source.len(), expected));
+    }
+    Ok(())
+}
