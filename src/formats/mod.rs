@@ -10,9 +10,9 @@ pub mod binary;
 #[cfg(test)]
 mod checking;
 mod gmsh;
-mod plan;
 mod medit;
 mod netgen;
+mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
 mod rows;
