@@ -21,8 +21,7 @@ pub(super) fn is_text(head: &[u8]) -> bool {
 pub(super) fn outline(input: &Input, out: &mut dyn Outline) -> Result<()> {
     let mut reader = TokenReader::new(input, b'#');
     let mut found = Found::new();
-    loop {
-        let Some(word) = reader.token()? else { break };
+    while let Some(word) = reader.token()? {
         let (at, name) = (word.at, word.bytes.to_ascii_lowercase());
         if name == b"end" {
             break;

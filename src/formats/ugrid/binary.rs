@@ -109,8 +109,13 @@ fn choose(input: &Input) -> Result<(&'static Variant, Counts)> {
     if let Some(found) = likely.iter().find(|(v, counts)| v.size(counts) == u128::from(len)) {
         return Ok(*found);
     }
-    let Some((variant, counts)) = likely.first() else {
-        let what = "seven counts of points and elements at the start, in one of the known variants";
+    let meant = match named {
+        Some(named) => likely.iter().find(|(variant, _)| variant.suffix == named.suffix),
+        None => likely.iter().min_by_key(|(variant, counts)| variant.size(counts)),
+    };
+    let Some((variant, counts)) = meant else {
+        let of = named.map_or("in one of the known variants", |named| named.suffix);
+        let what = format!("seven counts of points and elements at the start ({of})");
         return Err(input.source.malformed_binary(0, what, "other numbers"));
     };
     let expected = format!(

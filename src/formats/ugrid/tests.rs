@@ -178,7 +178,7 @@ fn errors_name_the_byte_and_what_stood_there() {
     ends(with(24, 2), sizes);
     ends(
         with(24, -2),
-        "byte 0: expected seven counts of points and elements at the start, in one of the known variants, found other numbers",
+        "byte 0: expected seven counts of points and elements at the start (b8), found other numbers",
     );
     let ids = 28 + 11 * 24;
     ends(with(ids, 12), "byte 292: element 1 names node 12, which the file does not define");
