@@ -9,6 +9,7 @@ mod batch;
 pub mod binary;
 mod gmsh;
 mod plan;
+mod nastran;
 #[cfg(test)]
 pub(crate) mod reading;
 mod sink;
@@ -97,7 +98,8 @@ pub trait ElementLayout: Send + Sync {
 }
 
 /// Every format that is read; detection tries them in this order.
-pub static FORMATS: &[&dyn Format] = &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu];
+pub static FORMATS: &[&dyn Format] =
+    &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu, &nastran::Nastran];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
