@@ -14,7 +14,8 @@ fn what_stands_before_begin_bulk_is_no_mesh() {
 
 #[test]
 fn nodes_in_every_notation() {
-    let large = format!("GRID*   {:<16}{:>16}{:>16}{:<16}*XY\n*XY     {:>16}\n", 3, "", "1.705+7", "-1.D+3", ".5");
+    let large =
+        format!("GRID*   {:<16}{:>16}{:>16}{:<16}*XY\n*XY     {:>16}\n", 3, "", "1.705+7", "-1.D+3", ".5");
     let text = format!(
         "$ note\r\nGRID           1        -.375018-.07100212.025\r\ngrid*,2,,1.5-3,-7.-1,*\r\n*,2.3+2\r\n{large}\
          GRID\t4\t\t5.\t\t+6.\r\nGRID    5\r\n  GRID,6,0,1,2,3,,123456 $ note\r\nCONM2,1,6,,1.\r\nEND BULK\r\n"
