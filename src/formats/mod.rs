@@ -8,8 +8,8 @@ mod abaqus;
 mod batch;
 pub mod binary;
 mod gmsh;
-mod plan;
 mod nastran;
+mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
 mod sink;

@@ -36,6 +36,8 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("gmsh", "pit2d_41_bin.msh", 220, PIT, 56),
     ("gmsh", "pit2d_41_parametric_bin.msh", 220, PIT, 56),
     ("gmsh", "pit2d_o2_41_ascii.msh", 821, PIT, 56),
+    ("nastran", "gmsh_mixed_free.bdf", 54, MIXED, 0),
+    ("nastran", "gmsh_mixed_large.bdf", 54, MIXED, 0),
     ("vtk", "all_42_ascii.vtk", 452, ALL, 14),
     ("vtk", "all_51_binary.vtk", 452, ALL, 14),
     ("vtk", "gmsh_mixed_wedge.vtk", 54, MIXED, 0),

@@ -33,10 +33,7 @@ pub(super) fn is_bulk_data(head: &[u8]) -> bool {
     if head.len() + BYTE_ORDER_MARK.len() >= HEAD_BYTES {
         head = &head[..memchr::memrchr(b'\n', head).unwrap_or(0)];
     }
-    if head.contains(&0) {
-        return false;
-    }
-    let (mut solution, mut control, mut cards, mut odd) = (false, false, 0, false);
+    let (mut solution, mut control, mut cards, mut odd) = (false, false, 0, head.contains(&0));
     for line in text::lines(0, head).map(|line| line.bytes) {
         match kind(line) {
             Line::Card(name) => {

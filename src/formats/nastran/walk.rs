@@ -95,7 +95,7 @@ impl<'i> Walk<'i> {
         let source = &file.source;
         self.from = if source.peek(0..3) == BYTE_ORDER_MARK { 3 } else { 0 };
         let mut lines = LineReader::new(source, self.siblings.limits(), self.from);
-        let (mut card, mut meaning) = (*b"        ", Meaning::Other);
+        let (mut card, mut meaning, mut last) = (*b"        ", Meaning::Other, None);
         while !self.ended {
             let Some(line) = lines.next_line()? else { break };
             let at = line.at;
@@ -105,6 +105,7 @@ impl<'i> Walk<'i> {
                     if meaning == Meaning::Other {
                         self.cut(source, at);
                     }
+                    last = last.filter(|_| !line.bytes.is_empty()).map(|_| at);
                 }
                 Line::Replication if meaning.is_mesh() => self.refuse(|| replication(source, at, &card))?,
                 Line::Stray if meaning.is_mesh() => {
@@ -116,6 +117,7 @@ impl<'i> Walk<'i> {
                         (card, meaning) = (name, Meaning::of(&name));
                     }
                     self.cut(source, at);
+                    last = meaning.is_mesh().then_some(at);
                     match meaning {
                         Meaning::Node => self.holds.nodes = true,
                         Meaning::Element | Meaning::Unknown => self.holds.elements = true,
@@ -139,7 +141,16 @@ impl<'i> Walk<'i> {
                 }
             }
         }
-        self.finish(source, lines.position().min(source.len()));
+        let end = lines.position().min(source.len());
+        if !self.ended
+            && let Some(last) = last
+            && end == source.len()
+            && source.peek(end - 1..end) != b"\n"
+        {
+            // ENDDATA may be missing: a last line without its end may have lost digits, or nodes.
+            self.refuse(|| source.malformed_text(last, "ENDDATA, or an end of line after the last card"))?;
+        }
+        self.finish(source, end);
         Ok(())
     }
 

@@ -71,6 +71,10 @@ fn errors_name_the_line_and_what_stands_there() {
             "SOL 101\nINCLUDE 'deck.bdf'\n".into(),
             "line 2: expected an include that does not lead back to itself",
         ),
+        (
+            four("CTETRA,1,1,1,2,3,4,\n,1"),
+            "line 6: expected ENDDATA, or an end of line after the last card, found \",1\"",
+        ),
         ("SOL 101\nCEND\n".into(), "line 3: expected GRID cards, found the end of the file"),
     ];
     for (text, expected) in rows {

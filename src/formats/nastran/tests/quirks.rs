@@ -117,7 +117,7 @@ fn includes_within_includes() {
     for (name, text) in [
         ("main.bdf", &main[..]),
         ("case.inc", b"CEND\nGRID,99\nBEGIN BULK\n"),
-        ("sub/bulk.inc", b"INCLUDE more.inc\n+stray\nGRID,4,,0.,1.,0."),
+        ("sub/bulk.inc", b"INCLUDE more.inc\n+stray\nGRID,4,,0.,1.,0.\n"),
         ("sub/more.inc", b"CQUAD4,1,1,1,2,3,\n,\n$ the last node is missing here\n"),
     ] {
         std::fs::write(folder.path().join(name), text).expect("written");
@@ -127,7 +127,7 @@ fn includes_within_includes() {
         error.contains("sub/more.inc: line 1: expected a node number in field 7, found a blank field"),
         "{error}"
     );
-    std::fs::write(folder.path().join("sub/more.inc"), "CQUAD4,1,1,1,2,3,4").expect("written");
+    std::fs::write(folder.path().join("sub/more.inc"), "CQUAD4,1,1,1,2,3,4\n").expect("written");
     let found = read(&Nastran, &folder.path().join("main.bdf")).expect("a deck");
     assert_eq!((found.nodes.count(), types(&found).as_str()), (4, "CQUAD4:1"));
 }
