@@ -14,6 +14,7 @@ mod gmsh;
 mod medit;
 mod nag;
 mod netgen;
+mod nastran;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
@@ -124,6 +125,8 @@ pub static FORMATS: &[&dyn Format] = &[
     &netgen::Netgen,
     &ugrid::Ugrid,
 ];
+pub static FORMATS: &[&dyn Format] =
+    &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu, &nastran::Nastran];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {

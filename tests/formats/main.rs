@@ -44,6 +44,8 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("su2", "gmsh_mixed.su2", 54, MIXED, 0),
     ("ugrid", "mixed.lb8.ugrid", 54, MIXED, 0),
     ("ugrid", "mixed.ugrid", 54, MIXED, 0),
+    ("nastran", "gmsh_mixed_free.bdf", 54, MIXED, 0),
+    ("nastran", "gmsh_mixed_large.bdf", 54, MIXED, 0),
     ("vtk", "all_42_ascii.vtk", 452, ALL, 14),
     ("vtk", "all_51_binary.vtk", 452, ALL, 14),
     ("vtk", "gmsh_mixed_wedge.vtk", 54, MIXED, 0),

@@ -79,6 +79,24 @@ impl Mesh {
         text.into_bytes()
     }
 
+    fn nastran(&self) -> Vec<u8> {
+        let mut text = String::new();
+        // In any order, as decks have it.
+        for (tag, kind, nodes) in &self.elements {
+            let card = ["CTRIA3", "CQUAD4", "CHEXA", "CPENTA"]
+                [TYPES.iter().position(|row| row.0 == *kind).expect("a type")];
+            let (first, rest) = nodes.split_at(nodes.len().min(6));
+            writeln!(text, "{card},{tag},1,{}", joined(first, 0, ",")).expect("memory");
+            if !rest.is_empty() {
+                writeln!(text, ",{}", joined(rest, 0, ",")).expect("memory");
+            }
+        }
+        for (k, [x, y, z]) in self.points.iter().enumerate() {
+            writeln!(text, "GRID,{},,{x},{y},{z}", k + 1).expect("memory");
+        }
+        text.into_bytes()
+    }
+
     fn gmsh_22(&self) -> Vec<u8> {
         let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", self.points.len());
         for (k, [x, y, z]) in self.points.iter().enumerate() {
@@ -241,6 +259,7 @@ fn a_mesh_of_the_same_digits_is_the_same_in_every_format() {
     let files = [
         ("abaqus", mesh.abaqus()),
         ("gmsh", mesh.gmsh_22()),
+        ("nastran", mesh.nastran()),
         ("vtk", mesh.vtk_text()),
         ("vtk", mesh.vtk_binary()),
         ("vtu", mesh.vtu_text()),

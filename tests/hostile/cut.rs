@@ -24,6 +24,11 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("vtk", within_last_number, "the last number is still one without its last digits"),
     ("abaqus", after_the_mesh, "sets come after the mesh"),
     ("abaqus", in_elements_at_end_of_line, "a deck has no end mark: it may well end with any element"),
+    (
+        "nastran",
+        after_first_element,
+        "a deck may lack ENDDATA: it may well end with any card, or within that word",
+    ),
     ("abaqus", within_last_node, "a node's number is still one without its last digits"),
 ];
 
@@ -55,6 +60,12 @@ fn in_elements_at_end_of_line(kept: &[u8], lost: &[u8]) -> bool {
     elements && (kept.ends_with(b"\n") || lost.starts_with(b"\n") || lost.starts_with(b"\r"))
 }
 
+/// A card ends here, or the word after the last one does.
+fn after_first_element(kept: &[u8], lost: &[u8]) -> bool {
+    let ended = kept.ends_with(b"\n") || lost.starts_with(b"\n") || b"ENDDATA\n".ends_with(lost);
+    contains(kept, b"\nC") && ended
+}
+
 /// All commas of the line are there, and something of its last number.
 fn within_last_node(kept: &[u8], lost: &[u8]) -> bool {
     let rest = lost.split(|b| *b == b'\n').next().unwrap_or_default();
@@ -82,7 +93,7 @@ fn a_mesh_that_ends_too_early_is_an_error() {
     for (format, path) in own_meshes() {
         let bytes = fs::read(&path).expect("readable");
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        let is_text = bytes.is_ascii() && matches!(format, "gmsh" | "abaqus" | "vtk");
+        let is_text = bytes.is_ascii() && matches!(format, "gmsh" | "abaqus" | "nastran" | "vtk");
         let places = (0..50).map(|_| random.below(bytes.len()));
         for cut in sections(&bytes).into_iter().chain(places.collect::<Vec<_>>()) {
             let what = format!("{format}/{name} cut to {cut} of {} bytes", bytes.len());

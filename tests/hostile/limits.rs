@@ -9,11 +9,12 @@ use crate::attempt::{attempt, attempt_bytes, refused};
 use crate::bombs::{gzip_bomb, zstd_bomb};
 
 /// Starts of text files, each in the middle of a line or of a number.
-const STARTS: [(&str, &str); 7] = [
+const STARTS: [(&str, &str); 8] = [
     ("abaqus", "*HEADING\n*NODE\n1, 0."),
     ("abaqus", "*HEADING\n*NODE\n1, 0., 0.\n*ELEMENT, TYPE=S3\n1, 1"),
     ("gmsh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 "),
     ("gmsh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 1 1 1\n2 1 0 1\n"),
+    ("nastran", "SOL 101\nBEGIN BULK\nGRID,1,,0."),
     ("vtk", "# vtk DataFile Version 3.0\na title of "),
     ("vtk", "# vtk DataFile Version 3.0\n\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 "),
     ("vtu", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\""),

@@ -5,7 +5,7 @@ use meshgauge::error::Kind;
 
 use crate::attempt::{attempt_bytes, attempt_with, options, refused};
 
-/// One triangle in four formats, with words to replace: the second node's number and the first coordinate of the third
+/// One triangle in every text format, with words to replace: the second node's number and the first coordinate of the third
 /// node, and the element's nodes.
 fn triangle(format: &str, second: &str, x: &str, nodes: [&str; 3]) -> Vec<u8> {
     let [a, b, c] = nodes;
@@ -20,6 +20,9 @@ fn triangle(format: &str, second: &str, x: &str, nodes: [&str; 3]) -> Vec<u8> {
         "gmsh 4.1" => format!(
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n{second}\n3\n0 0 0\n1 0 0\n{x} 1 0\n$EndNodes\n\
              $Elements\n1 1 7 7\n2 1 2 1\n7 {a} {b} {c}\n$EndElements\n"
+        ),
+        "nastran" => format!(
+            "GRID,1,,0.,0.,0.\nGRID,{second},,1.,0.,0.\nGRID,3,,{x},1.,0.\nCTRIA3,7,1,{a},{b},{c}\nENDDATA\n"
         ),
         "vtk" => {
             let [a, b, c] =
@@ -44,9 +47,9 @@ fn triangle(format: &str, second: &str, x: &str, nodes: [&str; 3]) -> Vec<u8> {
     text.into_bytes()
 }
 
-const ALL: [&str; 5] = ["abaqus", "gmsh 2.2", "gmsh 4.1", "vtk", "vtu"];
+const ALL: [&str; 6] = ["abaqus", "gmsh 2.2", "gmsh 4.1", "nastran", "vtk", "vtu"];
 /// Those whose nodes have numbers of their own.
-const NUMBERED: [&str; 3] = ["abaqus", "gmsh 2.2", "gmsh 4.1"];
+const NUMBERED: [&str; 4] = ["abaqus", "gmsh 2.2", "gmsh 4.1", "nastran"];
 const GOOD: [&str; 3] = ["1", "2", "3"];
 
 #[test]
