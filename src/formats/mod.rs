@@ -11,6 +11,7 @@ pub mod binary;
 mod checking;
 mod comsol;
 mod gmsh;
+mod matlab;
 mod medit;
 mod nag;
 mod netgen;
@@ -22,6 +23,7 @@ mod rows;
 mod simplex;
 mod sink;
 mod su2;
+mod surface;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod text;
@@ -124,6 +126,11 @@ pub static FORMATS: &[&dyn Format] = &[
     &su2::Su2,
     &netgen::Netgen,
     &ugrid::Ugrid,
+    &matlab::Matlab,
+    &surface::Off,
+    &surface::Ply,
+    &surface::Stl,
+    &surface::Obj,
 ];
 pub static FORMATS: &[&dyn Format] =
     &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu, &nastran::Nastran];

@@ -18,6 +18,10 @@ type Shapes = &'static [(Shape, u64)];
 
 const PIT: Shapes = &[(Triangle, 382)];
 const MIXED: Shapes = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
+/// The faces of that mesh alone.
+const FACES: Shapes = &[(Triangle, 28), (Quadrilateral, 36)];
+/// The surface of a block with a pit.
+const BLOCK: Shapes = &[(Triangle, 258)];
 /// Two of each.
 const LINEAR: Shapes =
     &[(Triangle, 2), (Quadrilateral, 2), (Tetrahedron, 2), (Pyramid, 2), (Wedge, 2), (Hexahedron, 2)];
@@ -46,6 +50,16 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("ugrid", "mixed.ugrid", 54, MIXED, 0),
     ("nastran", "gmsh_mixed_free.bdf", 54, MIXED, 0),
     ("nastran", "gmsh_mixed_large.bdf", 54, MIXED, 0),
+    ("matlab", "scipy_pit2d_o2_struct.mat", 821, PIT, 0),
+    ("matlab", "scipy_pit2d_pet_compressed.mat", 220, PIT, 56),
+    ("obj", "gmsh_pit_block.obj", 131, BLOCK, 0),
+    ("obj", "meshio_mixed.obj", 54, FACES, 0),
+    ("off", "gmsh_pit_block.off", 131, BLOCK, 0),
+    ("ply", "meshio_mixed_ascii.ply", 54, FACES, 0),
+    ("ply", "meshio_mixed_little.ply", 54, FACES, 0),
+    ("ply", "vtk_mixed_big.ply", 54, FACES, 0),
+    ("stl", "gmsh_pit_block.stl", 131, BLOCK, 0),
+    ("stl", "gmsh_pit_block_binary.stl", 131, BLOCK, 0),
     ("vtk", "all_42_ascii.vtk", 452, ALL, 14),
     ("vtk", "all_51_binary.vtk", 452, ALL, 14),
     ("vtk", "gmsh_mixed_wedge.vtk", 54, MIXED, 0),
