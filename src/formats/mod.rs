@@ -14,8 +14,8 @@ mod gmsh;
 mod matlab;
 mod medit;
 mod nag;
-mod netgen;
 mod nastran;
+mod netgen;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
@@ -126,14 +126,13 @@ pub static FORMATS: &[&dyn Format] = &[
     &su2::Su2,
     &netgen::Netgen,
     &ugrid::Ugrid,
+    &nastran::Nastran,
     &matlab::Matlab,
     &surface::Off,
     &surface::Ply,
     &surface::Stl,
     &surface::Obj,
 ];
-pub static FORMATS: &[&dyn Format] =
-    &[&gmsh::Gmsh, &abaqus::Abaqus, &vtk::Legacy, &vtk::Vtu, &nastran::Nastran];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
