@@ -24,11 +24,7 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("vtk", within_last_number, "the last number is still one without its last digits"),
     ("abaqus", after_the_mesh, "sets come after the mesh"),
     ("abaqus", in_elements_at_end_of_line, "a deck has no end mark: it may well end with any element"),
-    (
-        "nastran",
-        after_first_element,
-        "a deck may lack ENDDATA: it may well end with any card, or within that word",
-    ),
+    ("nastran", after_first_element, "a deck may lack ENDDATA: it may well end with any card"),
     ("abaqus", within_last_node, "a node's number is still one without its last digits"),
 ];
 
@@ -60,9 +56,9 @@ fn in_elements_at_end_of_line(kept: &[u8], lost: &[u8]) -> bool {
     elements && (kept.ends_with(b"\n") || lost.starts_with(b"\n") || lost.starts_with(b"\r"))
 }
 
-/// A card ends here, or the word after the last one does.
+/// A card ends here.
 fn after_first_element(kept: &[u8], lost: &[u8]) -> bool {
-    let ended = kept.ends_with(b"\n") || lost.starts_with(b"\n") || b"ENDDATA\n".ends_with(lost);
+    let ended = kept.ends_with(b"\n") || lost.starts_with(b"\n");
     contains(kept, b"\nC") && ended
 }
 

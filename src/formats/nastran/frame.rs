@@ -39,7 +39,7 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 }
 
 /// A coordinate system in terms of the basic one.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(super) struct Frame {
     axes: Axes,
     origin: [f64; 3],

@@ -105,7 +105,7 @@ impl<'i> Walk<'i> {
                     if meaning == Meaning::Other {
                         self.cut(source, at);
                     }
-                    last = last.filter(|_| !line.bytes.is_empty()).map(|_| at);
+                    last = last.filter(|_| !line.bytes.trim_ascii().is_empty()).map(|_| at);
                 }
                 Line::Replication if meaning.is_mesh() => self.refuse(|| replication(source, at, &card))?,
                 Line::Stray if meaning.is_mesh() => {
@@ -117,7 +117,7 @@ impl<'i> Walk<'i> {
                         (card, meaning) = (name, Meaning::of(&name));
                     }
                     self.cut(source, at);
-                    last = meaning.is_mesh().then_some(at);
+                    last = Some(at);
                     match meaning {
                         Meaning::Node => self.holds.nodes = true,
                         Meaning::Element | Meaning::Unknown => self.holds.elements = true,
@@ -147,7 +147,7 @@ impl<'i> Walk<'i> {
             && end == source.len()
             && source.peek(end - 1..end) != b"\n"
         {
-            // ENDDATA may be missing: a last line without its end may have lost digits, or nodes.
+            // ENDDATA may be missing: a last line without its end may have lost digits, nodes, or most of its card.
             self.refuse(|| source.malformed_text(last, "ENDDATA, or an end of line after the last card"))?;
         }
         self.finish(source, end);

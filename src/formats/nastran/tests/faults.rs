@@ -75,6 +75,10 @@ fn errors_name_the_line_and_what_stands_there() {
             four("CTETRA,1,1,1,2,3,4,\n,1"),
             "line 6: expected ENDDATA, or an end of line after the last card, found \",1\"",
         ),
+        (
+            format!("{SQUARE}CQUAD4,1,1,1,2,3,4\nCQU"),
+            "line 6: expected ENDDATA, or an end of line after the last card, found \"CQU\"",
+        ),
         ("SOL 101\nCEND\n".into(), "line 3: expected GRID cards, found the end of the file"),
     ];
     for (text, expected) in rows {
@@ -137,6 +141,7 @@ fn damaged_decks_give_errors_and_no_panic() {
 }
 
 #[test]
+#[expect(clippy::disallowed_methods, reason = "a small mesh of known size is read whole, to be damaged")]
 fn a_real_deck_that_was_cut_or_flipped_does_no_harm() {
     let whole = std::fs::read(
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/nastran/gmsh_mixed_large.bdf"),
