@@ -5,12 +5,19 @@
 //! format is one file here and one row of [`FORMATS`].
 
 mod abaqus;
+mod ansys;
 mod batch;
 pub mod binary;
 #[cfg(test)]
 mod checking;
+pub mod columns;
 mod comsol;
+#[cfg(test)]
+mod contents;
+pub mod degenerate;
+mod femgv;
 mod gmsh;
+mod lsdyna;
 mod medit;
 mod nag;
 mod netgen;
@@ -25,6 +32,7 @@ mod su2;
 pub(crate) mod testing;
 pub mod text;
 mod ugrid;
+mod unv;
 mod vtk;
 pub mod words;
 
@@ -123,6 +131,11 @@ pub static FORMATS: &[&dyn Format] = &[
     &su2::Su2,
     &netgen::Netgen,
     &ugrid::Ugrid,
+    &femgv::Frd,
+    &femgv::Femgv,
+    &unv::Unv,
+    &ansys::Ansys,
+    &lsdyna::Lsdyna,
 ];
 
 /// The format named `name`.
