@@ -68,7 +68,10 @@ fn what_is_wrong_is_named() {
         (archive(NODES, "2,COMPACT,1\n(19i8)\n"), "line 9: compact EBLOCKs are not read"),
         (archive(NODES, "10,,,1\n(junk)\n"), "line 10: expected a Fortran format"),
         (archive(NODES, &format!("10,,,1\n(15i8)\n{row}")), "the end mark -1 of an EBLOCK"),
-        (archive("3\n(1i9,3e20.9e3)\n        1\n", ""), "line 5: expected a node number in columns 1 to 9"),
+        (
+            archive("3\n(1i9,3e20.9e3)\n        1\n", ""),
+            "expected the end mark -1 of a NBLOCK, found the end of the file",
+        ),
         (
             archive(NODES, &format!("10,,,1\n(15i8)\n{}      -1\n", row.replace('3', "x"))),
             "expected a node number",

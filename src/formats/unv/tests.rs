@@ -131,14 +131,14 @@ fn what_is_wrong_is_named() {
         ),
         (
             nodes(3) + &dataset("2412", &[&integers(&[1, 91, 1, 1, 7, 9]), &integers(&[1, 2, 3])]),
-            "line 13: expected 9 nodes of element 1, found \"    -1\"",
+            "line 14: expected 9 nodes of element 1, found \"    -1\"",
         ),
         (
             nodes(3) + &dataset("2412", &[&integers(&[1, 91, 1, 1, 7, u64::MAX >> 31])]),
-            "line 11: number of nodes of an element is over the limit",
+            "line 12: number of nodes of an element is over the limit",
         ),
         (
-            nodes(3) + &triangle.replace("         3\n", "        3x\n"),
+            nodes(3) + &triangle.replace("         2         3\n", "         2        3x\n"),
             "expected a node number in columns 21 to 30, found \"        3x\"",
         ),
         (format!("{}    -1\n    58b     1     2\n", nodes(1)), "line 7: binary datasets (58b) are not read"),
