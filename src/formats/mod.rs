@@ -5,12 +5,19 @@
 //! format is one file here and one row of [`FORMATS`].
 
 mod abaqus;
+mod ansys;
 mod batch;
 pub mod binary;
 #[cfg(test)]
 mod checking;
+pub mod columns;
 mod comsol;
+#[cfg(test)]
+mod contents;
+pub mod degenerate;
+mod femgv;
 mod gmsh;
+mod lsdyna;
 mod matlab;
 mod medit;
 mod nag;
@@ -28,6 +35,7 @@ mod surface;
 pub(crate) mod testing;
 pub mod text;
 mod ugrid;
+mod unv;
 mod vtk;
 pub mod words;
 
@@ -132,6 +140,11 @@ pub static FORMATS: &[&dyn Format] = &[
     &surface::Ply,
     &surface::Stl,
     &surface::Obj,
+    &femgv::Frd,
+    &femgv::Femgv,
+    &unv::Unv,
+    &ansys::Ansys,
+    &lsdyna::Lsdyna,
 ];
 
 /// The format named `name`.

@@ -29,6 +29,10 @@ const LINEAR: Shapes =
 const ALL: Shapes =
     &[(Triangle, 7), (Quadrilateral, 9), (Tetrahedron, 4), (Pyramid, 3), (Wedge, 6), (Hexahedron, 7)];
 
+/// Bricks and shells of ANSYS, collapsed in every documented way.
+const DEGENERATE: Shapes =
+    &[(Triangle, 1), (Quadrilateral, 1), (Tetrahedron, 2), (Pyramid, 1), (Wedge, 1), (Hexahedron, 2)];
+
 /// Format, file, nodes, measured elements, elements that no measure is defined for.
 const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("abaqus", "gmsh_pit2d_o2.inp", 821, PIT, 56),
@@ -71,6 +75,12 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("vtu", "linear_inline_lzma.vtu", 55, LINEAR, 0),
     ("vtu", "linear_inline_none.vtu", 55, LINEAR, 0),
     ("vtu", "linear_raw_none.vtu", 55, LINEAR, 0),
+    ("femgv", "two_shapes.neu", 7, &[(Quadrilateral, 1), (Tetrahedron, 1)], 2),
+    ("frd", "two_shapes.frd", 9, &[(Tetrahedron, 1), (Hexahedron, 1)], 1),
+    ("unv", "gmsh_mixed.unv", 54, MIXED, 0),
+    ("unv", "gmsh_pit2d_o2.unv", 821, PIT, 56),
+    ("ansys", "degenerate.cdb", 10, DEGENERATE, 2),
+    ("lsdyna", "gmsh_mixed.key", 54, MIXED, 0),
 ];
 
 fn folder(format: &str) -> PathBuf {
