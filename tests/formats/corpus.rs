@@ -40,6 +40,10 @@ const COUNTED_OTHERWISE: &[(&str, u64, u64)] = &[
     ("nastran/mixed_thermal_elements2.bdf", 40, 40),
     // Gmsh leaves lines and points out of its decks.
     ("lsdyna/gmsh_mixed.key", 54, 100),
+    // Nine groups, of which seven are of edges.
+    ("matlab/hageman_metal_electrolyte_cells.mat", 6081, 3260),
+    // 56 edges come with the triangles.
+    ("matlab/synthetic_pit2d_v5_compressed.mat", 220, 438),
 ];
 
 /// What a mesh of a format that is read is refused for.
@@ -48,6 +52,8 @@ const REFUSED: &[(&str, &str)] = &[
     // What a deck includes: data lines without a keyword.
     ("abaqus/synthetic_torture/nodes_b.inp", "expected a mesh of a known format"),
     ("nastran/include_mode_solid_shell_bar.bdf", "included file \"geom.inc\""),
+    ("matlab/synthetic_pit2d_v4.mat", "expected a mesh of a known format"),
+    ("matlab/synthetic_pit2d_v73.mat", "version 7.3 (HDF5) are not read yet"),
     ("vtu/vtkio_hexahedron_parallel.pvtu", "score the pieces"),
 ];
 

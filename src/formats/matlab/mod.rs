@@ -126,5 +126,5 @@ impl ElementLayout for Elements {
 fn id(value: f64) -> Option<u64> {
     const MOST: f64 = (1u64 << 53) as f64;
     let id = value as u64;
-    (value >= 1.0 && value <= MOST && id as f64 == value).then_some(id)
+    ((1.0..=MOST).contains(&value) && id as f64 == value).then_some(id)
 }

@@ -20,13 +20,15 @@ fn read_bytes(format: &dyn Format, bytes: &[u8]) -> Result<Mesh> {
 }
 
 /// Nodes, triangles, quadrilaterals, polygons and unused nodes.
-fn counts(mesh: &Mesh) -> (u64, usize, usize, u64, u64) {
+type Counts = (u64, usize, usize, u64, u64);
+
+fn counts(mesh: &Mesh) -> Counts {
     let polygons = mesh.ledger.types.iter().filter(|t| t.name == "polygon").map(|t| t.count).sum();
     let (triangles, quadrilaterals) = (mesh.count(Shape::Triangle), mesh.count(Shape::Quadrilateral));
     (mesh.nodes.count(), triangles, quadrilaterals, polygons, mesh.nodes.unused())
 }
 
-fn own() -> Vec<(&'static dyn Format, PathBuf, (u64, usize, usize, u64, u64))> {
+fn own() -> Vec<(&'static dyn Format, PathBuf, Counts)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
     let rows: [(&'static dyn Format, &str, _); 8] = [
         (&Off, "off/gmsh_pit_block.off", (131, 258, 0, 0, 0)),
@@ -130,7 +132,7 @@ fn random(state: &mut u64) -> u64 {
 fn a_file_that_ends_too_early_is_an_error() {
     for (format, path, _) in own() {
         let bytes = bytes_of(&path);
-        // A number that lost its last digit is still a number: cut before the last word.
+        // A number that lost its last digit is still a number: cut before the last line.
         let end = bytes.len() - 40;
         for k in 0..50 {
             match read_bytes(format, &bytes[..end * k / 50]) {
