@@ -78,6 +78,8 @@ pub struct ElementSink<'a> {
     /// The types met so far, each with its row of the ledger; the type at hand is the one at `current`.
     types: Vec<(Arc<ElementType>, usize)>,
     current: usize,
+    /// Elements of the type at hand that the ledger does not know of yet.
+    run: u64,
 }
 
 impl<'a> ElementSink<'a> {
@@ -93,6 +95,7 @@ impl<'a> ElementSink<'a> {
             ledger: Ledger::default(),
             types: Vec::new(),
             current: 0,
+            run: 0,
         }
     }
 
@@ -109,17 +112,29 @@ impl<'a> ElementSink<'a> {
         }
     }
 
+    /// Types come in long runs: the ledger hears of a run when it ends.
     #[inline]
     fn count_one(&mut self, kind: &Arc<ElementType>) {
         if self.types.get(self.current).is_none_or(|(known, _)| !Arc::ptr_eq(known, kind)) {
-            self.current =
-                self.types.iter().position(|(known, _)| Arc::ptr_eq(known, kind)).unwrap_or_else(|| {
-                    let row = self.ledger.row(&kind.name, &kind.class);
-                    self.types.push((Arc::clone(kind), row));
-                    self.types.len() - 1
-                });
+            self.change_type(kind);
         }
-        self.ledger.types[self.types[self.current].1].count += 1;
+        self.run += 1;
+    }
+
+    fn change_type(&mut self, kind: &Arc<ElementType>) {
+        self.end_run();
+        self.current =
+            self.types.iter().position(|(known, _)| Arc::ptr_eq(known, kind)).unwrap_or_else(|| {
+                let row = self.ledger.row(&kind.name, &kind.class);
+                self.types.push((Arc::clone(kind), row));
+                self.types.len() - 1
+            });
+    }
+
+    fn end_run(&mut self) {
+        if let Some((_, row)) = self.types.get(self.current) {
+            self.ledger.types[*row].count += std::mem::take(&mut self.run);
+        }
     }
 
     /// Notes that nodes are used: those of a long element that is not measured, whose first nodes came with
@@ -135,21 +150,37 @@ impl<'a> ElementSink<'a> {
 
     #[inline]
     fn measured(&mut self, label: u64, shape: Shape, corners: &[u8], ids: &[u64]) -> Result<()> {
-        let mut rows = [0u32; Shape::MAX_CORNERS];
-        let rows = &mut rows[..corners.len()];
+        /// One number of corners after another, so that each has loops of known length.
+        macro_rules! with_corners {
+            ($($count:literal),*) => {
+                $(if let Ok(corners) = corners.try_into() {
+                    return self.measured_by::<$count>(label, shape, corners, ids);
+                })*
+            };
+        }
+        with_corners!(4, 8, 3, 6, 5);
+        unreachable!("no shape has {} corners", corners.len())
+    }
+
+    #[inline]
+    fn measured_by<const CORNERS: usize>(
+        &mut self,
+        label: u64,
+        shape: Shape,
+        corners: &[u8; CORNERS],
+        ids: &[u64],
+    ) -> Result<()> {
+        let mut rows = [0u32; CORNERS];
         for (row, corner) in rows.iter_mut().zip(corners) {
             let Some(&id) = ids.get(*corner as usize) else {
-                return Err(Error::malformed(
-                    format!("{} nodes or more", corners.len()),
-                    format!("{}", ids.len()),
-                ));
+                return Err(Error::malformed(format!("{CORNERS} nodes or more"), format!("{}", ids.len())));
             };
             match self.nodes.row(id) {
                 Some(known) => *row = known,
                 None => return self.missing(label, id),
             }
         }
-        if ids.len() > corners.len() {
+        if ids.len() > CORNERS {
             for id in ids {
                 match self.nodes.row(*id) {
                     Some(row) => self.nodes.mark_used(row),
@@ -158,11 +189,11 @@ impl<'a> ElementSink<'a> {
             }
         }
         rows.iter().for_each(|row| self.nodes.mark_used(*row));
-        self.ledger.repeated_nodes += u64::from(has_repeats(rows));
-        self.push(label, shape, rows)
+        self.ledger.repeated_nodes += u64::from(has_repeats(&rows));
+        self.push(label, shape, &rows)
     }
 
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, label: u64, shape: Shape, rows: &[u32]) -> Result<()> {
         let slot = &mut self.open[shape.index()];
         let chunk = match slot {
@@ -194,6 +225,7 @@ impl<'a> ElementSink<'a> {
 
     /// Ends the piece: hands on what is left and says what was met. The number of chunks comes with it.
     pub fn finish(mut self) -> Result<(Ledger, u32)> {
+        self.end_run();
         for slot in &mut self.open {
             if let Some(chunk) = slot.take() {
                 self.chunks.hand_on(chunk)?;
@@ -204,8 +236,8 @@ impl<'a> ElementSink<'a> {
 }
 
 /// Whether some row comes twice.
-#[inline]
-fn has_repeats(rows: &[u32]) -> bool {
+#[inline(always)]
+fn has_repeats<const CORNERS: usize>(rows: &[u32; CORNERS]) -> bool {
     let mut repeats = false;
     for (i, row) in rows.iter().enumerate() {
         for other in &rows[..i] {

@@ -52,7 +52,7 @@ impl Chunk {
     }
 
     /// Adds an element. `rows` are the shape's corners as rows of the node table.
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, label: u64, rows: &[u32]) {
         debug_assert!(rows.len() == self.shape.corners() && !self.is_full());
         self.labels.push(label);
