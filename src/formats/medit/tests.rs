@@ -3,9 +3,9 @@
 use super::Medit;
 use crate::error::Result;
 use crate::formats::Format;
-use crate::formats::checking::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::formats::gmsh::Gmsh;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::mesh::Shape::{self, Hexahedron, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
 const MIXED: &[(Shape, usize)] = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
@@ -24,11 +24,11 @@ const CORPUS: &[Row] = &[
 ];
 
 fn read_bytes(bytes: &[u8]) -> Result<Mesh> {
-    checking::read_bytes(&Medit, "", bytes)
+    testing::read_bytes(&Medit, "a.mesh", bytes)
 }
 
 fn message(text: &str) -> String {
-    checking::message(&Medit, text.as_bytes())
+    testing::message(&Medit, "a.mesh", text.as_bytes())
 }
 
 /// The bytes before the keyword End, which a file need not have.
@@ -56,11 +56,7 @@ fn the_mixed_mesh_is_that_of_gmsh() {
     let mut files = vec![own("medit").join("mixed.meshb")];
     files.extend(corpus().map(|corpus| corpus.join("medit/meshio_mixed.mesh")));
     for file in files {
-        let name = file.display();
-        let mesh = read(&Medit, &file).expect("readable");
-        for shape in Shape::ALL {
-            assert_eq!(checking::sums(&mesh, shape), checking::sums(&expected, shape), "{name}: {shape}");
-        }
+        testing::same_elements(&testing::read_file(&Medit, &file), &expected, 0.0);
     }
 }
 
@@ -263,7 +259,7 @@ fn counts_and_places_of_binary_files_are_not_believed() {
     let with = |at: usize, value: u32| {
         let mut bytes = whole.clone();
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
-        checking::message(&Medit, &bytes)
+        testing::message(&Medit, "a.mesh", &bytes)
     };
     assert_eq!(
         with(28, u32::MAX),
