@@ -122,6 +122,19 @@ fn two_dimensions_and_no_end() {
 }
 
 #[test]
+fn polygons_and_polyhedra_were_passed_over_and_not_counted() {
+    let text = "MeshVersionFormatted 2\nDimension 3\nVertices 3\n0 0 0 1\n1 0 0 1\n0 1 0 1\n\
+                BoundaryPolygonHeaders 2\n1 0\n4 0\nBoundaryPolygonVertices 6\n1\n2\n3\n3\n2\n1\n\
+                InnerPolygonHeaders 1\n1 0\nInnerPolygonVertices 3\n1 2 3\nPolyhedraHeaders 1\n1 0\nPolyhedraFaces 1\n1\nEnd\n";
+    let mesh = read_bytes(text.as_bytes()).expect("readable");
+    assert_eq!(["polygon", "polyhedron"].map(|what| counted(&mesh, what)), [2, 1]);
+    assert_eq!(
+        message(&text.replace("4 0\nB", "4\nB")),
+        "line 10: expected 2 rows of BoundaryPolygonHeaders of 2 numbers each, and not 3 in all, found \"BoundaryPolygonVertices 6\""
+    );
+}
+
+#[test]
 fn long_tables_are_cut_into_pieces_that_join_to_the_same_mesh() {
     let count = 120_000;
     let rows: String = (0..count)
@@ -193,7 +206,7 @@ fn errors_name_the_line_and_what_stood_there() {
     );
 }
 
-/// A binary file of two triangles, an edge and a keyword that is not known.
+/// A binary file of two triangles, an edge, two polygons, a polyhedron and a keyword that is not known.
 fn binary(version: u32, big: bool) -> Vec<u8> {
     let (wide, long, real) = (version > 2, version > 3, version > 1);
     let mut bytes = Vec::new();
@@ -232,6 +245,8 @@ fn binary(version: u32, big: bool) -> Vec<u8> {
         }
     });
     table(5, Some(1), &|b| [1, 2, 0].iter().for_each(|id| put(b, *id, word)));
+    table(203, Some(2), &|b| [1, 0, 4, 0].iter().for_each(|k| put(b, *k, word)));
+    table(207, Some(1), &|b| [1, 0].iter().for_each(|k| put(b, *k, word)));
     table(54, None, &|_| ());
     bytes
 }
@@ -244,6 +259,7 @@ fn binary_files_of_all_versions_and_both_byte_orders() {
             assert!(Medit.detect(&bytes));
             let mesh = read_bytes(&bytes).unwrap_or_else(|e| panic!("version {version}, {big}: {e}"));
             assert_eq!((mesh.nodes.count(), counted(&mesh, "line")), (4, 1));
+            assert_eq!(["polygon", "polyhedron"].map(|what| counted(&mesh, what)), [2, 1]);
             let second = (2, Triangle, vec![[1., 0., 0.], [1., 1.5, 0.], [0., 1., 0.]]);
             assert_eq!(mesh.elements[1], second);
             for cut in 12..bytes.len() - 8 {
