@@ -8,12 +8,8 @@ mod abaqus;
 mod ansys;
 mod batch;
 pub mod binary;
-#[cfg(test)]
-mod checking;
 pub mod columns;
 mod comsol;
-#[cfg(test)]
-mod contents;
 pub mod degenerate;
 mod femgv;
 mod gmsh;
@@ -32,7 +28,7 @@ mod sink;
 mod su2;
 mod surface;
 #[cfg(test)]
-pub(crate) mod testing;
+mod testing;
 pub mod text;
 mod ugrid;
 mod unv;

@@ -1,9 +1,8 @@
 //! Whole archives: those of the corpus, one written after CDWRITE's layout, and damaged ones.
 
 use super::Ansys;
-use crate::formats::checking::{corpus, damage, detected, message, own, read_bytes};
-use crate::formats::contents::holds;
 use crate::formats::reading::read;
+use crate::formats::testing::{corpus, damage, detected, holds, message, own, read_bytes};
 use crate::mesh::Shape;
 
 const CORPUS: [(&str, &str); 3] = [
@@ -52,12 +51,12 @@ fn formats_are_taken_from_the_archive() {
         NODES,
         "10,,,1\n(15i8)\n       7       1       1       1       0       1       2       3\n      -1\n",
     );
-    let mesh = read_bytes(&Ansys, "", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mesh = read_bytes(&Ansys, "a.cdb", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), "3 nodes, SHELL181 of 3 nodes:1");
     assert_eq!(mesh.elements[0].0, 7);
     assert_eq!(mesh.elements[0].2[2], [0.0, 1.0, 0.0]);
     let block = text.replace("ET,1,SHELL181\n", "ETBLOCK,1,1\n(2i9,19a9)\n        1      181\n       -1\n");
-    let mesh = read_bytes(&Ansys, "", block.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mesh = read_bytes(&Ansys, "a.cdb", block.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), "3 nodes, SHELL181 of 3 nodes:1");
 }
 
@@ -84,7 +83,7 @@ fn what_is_wrong_is_named() {
         ("/PREP7\nET,1,185\n".to_owned(), "expected a command NBLOCK, found the end of the file"),
     ];
     for (text, expected) in rows {
-        let error = message(&Ansys, text.as_bytes());
+        let error = message(&Ansys, "a.cdb", text.as_bytes());
         assert!(error.contains(expected), "{error}\n{text}");
     }
 }

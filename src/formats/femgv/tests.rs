@@ -2,9 +2,8 @@
 
 use super::{Femgv, Frd};
 use crate::formats::Format;
-use crate::formats::checking::{corpus, damage, detected, message, own, read_bytes};
-use crate::formats::contents::holds;
 use crate::formats::reading::read;
+use crate::formats::testing::{corpus, damage, detected, holds, message, own, read_bytes};
 
 const NEUTRAL: [(&str, &str); 2] = [
     ("femgv_frd/synthetic_femgen_neutral_10digit.neu", "220 nodes, tr3:382"),
@@ -46,7 +45,7 @@ fn numbers_touch_and_unknown_types_are_counted() {
         " -1         1    7    1    1    1    1\n -2         1         2\n -2         3\n -3\n 9999\n",
     ]
     .concat();
-    let mesh = read_bytes(&Femgv, "", small.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mesh = read_bytes(&Femgv, "a.femgv", small.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), "3 nodes, tr3:1", "a record over two lines of nodes");
     assert_eq!(mesh.elements[0].2[0], [-1.0, -2.0, -3.0]);
 }
@@ -72,7 +71,7 @@ fn what_is_wrong_is_named() {
         ),
     ];
     for (text, expected) in rows {
-        let error = message(&Femgv, text.as_bytes());
+        let error = message(&Femgv, "a.femgv", text.as_bytes());
         assert!(error.contains(expected), "{error}\n{text}");
     }
 }

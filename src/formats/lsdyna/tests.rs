@@ -1,10 +1,9 @@
 //! Whole decks: Gmsh's, those of the corpus, cards of every kind, and damaged ones.
 
 use super::Lsdyna;
-use crate::formats::checking::{corpus, damage, detected, message, own, read_bytes};
-use crate::formats::contents::{corners, holds};
 use crate::formats::gmsh::Gmsh;
 use crate::formats::reading::read;
+use crate::formats::testing::{corpus, damage, detected, holds, message, own, read_bytes, same_elements};
 use crate::mesh::Shape;
 
 const MIXED: &str =
@@ -36,7 +35,7 @@ fn gmsh_writes_the_same_mesh_here_as_in_its_own_format() {
     let mesh = read(&Lsdyna, &own("lsdyna").join("gmsh_mixed.key")).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), MIXED);
     let native = read(&Gmsh, &own("gmsh").join("mixed_hex_prism_41.msh")).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(corners(&mesh), corners(&native));
+    same_elements(&mesh, &native, 1e-6);
 }
 
 /// The corners of the unit brick from 1 on, and two more nodes.
@@ -66,7 +65,7 @@ fn deck(cards: &str) -> String {
 
 #[track_caller]
 fn mesh(cards: &str) -> crate::formats::reading::Mesh {
-    read_bytes(&Lsdyna, "", deck(cards).as_bytes()).unwrap_or_else(|e| panic!("{e}\n{cards}"))
+    read_bytes(&Lsdyna, "a.k", deck(cards).as_bytes()).unwrap_or_else(|e| panic!("{e}\n{cards}"))
 }
 
 #[test]
@@ -143,7 +142,7 @@ fn wide_cards_are_read() {
         + "                   3                 0.0                 1.0                 0.0\n"
         + "*ELEMENT_SHELL\n"
         + &card(20, &[1, 1, 1, 2, 3, 3]);
-    let mesh = read_bytes(&Lsdyna, "", long.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mesh = read_bytes(&Lsdyna, "a.k", long.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), "3 nodes, ELEMENT_SHELL (triangle):1");
     assert_eq!(mesh.elements[0].2[0], [-1.5, 0.0, 0.0]);
 }
@@ -181,7 +180,7 @@ fn what_is_wrong_is_named() {
         ("*ELEMENT_SOLID\n".to_owned() + &card(8, &[1, 1]), "expected another card of the element before"),
         (String::new(), "expected *ELEMENT cards, found the end of the file"),
     ] {
-        let error = message(&Lsdyna, deck(&cards).as_bytes());
+        let error = message(&Lsdyna, "a.k", deck(&cards).as_bytes());
         assert!(error.contains(expected), "{error}\n{cards}");
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Matlab;
 use crate::error::Result;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Random};
 use crate::mesh::Shape;
 
 #[expect(clippy::disallowed_methods, reason = "the test's own small files")]
@@ -13,9 +14,7 @@ fn bytes_of(path: &Path) -> Vec<u8> {
 }
 
 fn read_bytes(bytes: &[u8]) -> Result<Mesh> {
-    let file = tempfile::NamedTempFile::new().expect("a temporary file");
-    std::fs::write(file.path(), bytes).expect("a temporary file");
-    read(&Matlab, file.path())
+    testing::read_bytes(&Matlab, "a.mat", bytes)
 }
 
 fn lines(mesh: &Mesh) -> u64 {
@@ -45,17 +44,14 @@ fn own_files_are_read() {
 
 #[test]
 fn corpus_files_have_the_counts_of_other_readers() {
-    let Some(corpus) = std::env::var_os("MESHGAUGE_CORPUS") else {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-        return;
-    };
+    let Some(corpus) = testing::corpus() else { return };
     let rows = [
         ("pdetool_halfmesh_p_e_t.mat", 407, 752, 100),
         ("synthetic_pit2d_v5_compressed.mat", 220, 382, 56),
         ("hageman_metal_electrolyte_cells.mat", 6081, 1662 + 1332, 10 + 10 + 4 * 18 + 174),
     ];
     for (name, nodes, triangles, edges) in rows {
-        let mesh = read(&Matlab, &Path::new(&corpus).join("matlab").join(name)).expect("a mesh");
+        let mesh = read(&Matlab, &corpus.join("matlab").join(name)).expect("a mesh");
         assert_eq!(
             (mesh.nodes.count(), mesh.count(Shape::Triangle), lines(&mesh)),
             (nodes, triangles, edges),
@@ -66,16 +62,8 @@ fn corpus_files_have_the_counts_of_other_readers() {
             (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) > (c[2][0] - c[0][0]) * (c[1][1] - c[0][1])
         }));
     }
-    let error = read(&Matlab, &Path::new(&corpus).join("matlab/synthetic_pit2d_v73.mat")).expect_err("HDF5");
+    let error = read(&Matlab, &corpus.join("matlab/synthetic_pit2d_v73.mat")).expect_err("HDF5");
     assert!(error.to_string().contains("version 7.3 (HDF5) are not read yet: save with -v7"), "{error}");
-}
-
-/// Pseudo-random numbers, the same on every run.
-fn random(state: &mut u64) -> u64 {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    *state
 }
 
 #[test]
@@ -91,16 +79,16 @@ fn a_file_that_ends_too_early_is_an_error() {
 
 #[test]
 fn a_file_with_flipped_bytes_is_read_or_refused() {
-    let mut state = 0x2007_0503;
+    let mut random = Random(0x2007_0503);
     for path in own() {
         let bytes = bytes_of(&path);
         for k in 0..200 {
             let mut broken = bytes.clone();
             // The heads of variables are few bytes: half of the flips go there.
             let within = if k % 2 == 0 { broken.len() } else { 400 };
-            for _ in 0..1 + random(&mut state) % 3 {
-                let at = random(&mut state) as usize % within;
-                broken[at] = random(&mut state) as u8;
+            for _ in 0..1 + random.below(3) {
+                let at = random.below(within);
+                broken[at] = random.below(256) as u8;
             }
             if let Err(error) = read_bytes(&broken) {
                 assert!(!error.is_resource(), "{error}");

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::keywords::Polytopes;
 use super::{COOKIES, Found, keywords};
 use crate::error::{Error, Result};
 use crate::formats::Outline;
@@ -138,6 +139,9 @@ fn elements(
     if let Some(name) = keywords::ordered_by(code) {
         found.ordered.push(name.to_owned());
     }
+    if let Some(polytopes) = Polytopes::by_code(code) {
+        return count(chain, link, polytopes, out);
+    }
     let Some(keyword) = keywords::by_code(code) else { return Ok(()) };
     let (rows, at) = chain.rows(link)?;
     let (word, bytes) = (chain.words.word, link.end.saturating_sub(at));
@@ -150,4 +154,14 @@ fn elements(
     let first = found.add_elements(keyword, rows);
     let source = Arc::clone(chain.source);
     ElementRecords { source, words: chain.words, at, width, kind, first }.outline(rows, out)
+}
+
+/// Counts the rows of polygons or polyhedra.
+fn count(chain: &Chain<'_>, link: &Link, polytopes: &Polytopes, out: &mut dyn Outline) -> Result<()> {
+    let (rows, at) = chain.rows(link)?;
+    let (width, bytes) = (polytopes.width * chain.words.word, link.end.saturating_sub(at));
+    if rows.checked_mul(width as u64) != Some(bytes) {
+        return Err(wrong_size(polytopes.name, rows, width, bytes));
+    }
+    out.count(&polytopes.kind(), rows)
 }

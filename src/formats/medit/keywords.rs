@@ -72,6 +72,41 @@ pub(super) fn ordered_by(code: u32) -> Option<&'static str> {
     NAMES.get(code.checked_sub(FIRST)? as usize).copied()
 }
 
+/// A keyword with a row for every polygon or polyhedron, which are counted. A row of headers says where in another table
+/// the nodes or faces begin; others leave room for a fixed number.
+pub(super) struct Polytopes {
+    /// As it stands in text.
+    pub(super) name: &'static str,
+    code: u32,
+    what: &'static str,
+    /// Numbers in a row.
+    pub(super) width: usize,
+}
+
+impl Polytopes {
+    /// The type of all its rows.
+    pub(super) fn kind(&self) -> ElementType {
+        ElementType::counted(self.name, self.what, 0)
+    }
+
+    /// The keyword that text names.
+    pub(super) fn by_name(name: &[u8]) -> Option<&'static Self> {
+        POLYTOPES.iter().find(|keyword| keyword.name.as_bytes().eq_ignore_ascii_case(name))
+    }
+
+    /// The keyword of a binary file.
+    pub(super) fn by_code(code: u32) -> Option<&'static Self> {
+        POLYTOPES.iter().find(|keyword| keyword.code == code)
+    }
+}
+
+/// Inner polygons are no elements but the faces of polyhedra.
+static POLYTOPES: [Polytopes; 3] = [
+    Polytopes { name: "Polyhedra", code: 46, what: "polyhedron", width: 33 },
+    Polytopes { name: "BoundaryPolygonHeaders", code: 203, what: "polygon", width: 2 },
+    Polytopes { name: "PolyhedraHeaders", code: 207, what: "polyhedron", width: 2 },
+];
+
 /// Other names of old versions.
 const ALIASES: [(&str, &str); 3] =
     [("Pentahedra", "Prisms"), ("QuadrilateralsP2", "QuadrilateralsQ2"), ("HexahedraP2", "HexahedraQ2")];

@@ -2,7 +2,7 @@
 //! with a table; those of vertices and elements are read, in any order, and all others are passed over.
 //!
 //! Elements have no numbers: theirs is their position in the file, from 1, over all tables of triangles, quadrilaterals
-//! and solids in file order. Edges are counted as lines and take no part in it.
+//! and solids in file order. Edges are counted as lines, polygons and polyhedra as such; they take no part in it.
 
 mod binary;
 mod keywords;

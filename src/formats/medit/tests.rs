@@ -3,9 +3,9 @@
 use super::Medit;
 use crate::error::Result;
 use crate::formats::Format;
-use crate::formats::checking::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::formats::gmsh::Gmsh;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::mesh::Shape::{self, Hexahedron, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
 const MIXED: &[(Shape, usize)] = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
@@ -24,11 +24,11 @@ const CORPUS: &[Row] = &[
 ];
 
 fn read_bytes(bytes: &[u8]) -> Result<Mesh> {
-    checking::read_bytes(&Medit, "", bytes)
+    testing::read_bytes(&Medit, "a.mesh", bytes)
 }
 
 fn message(text: &str) -> String {
-    checking::message(&Medit, text.as_bytes())
+    testing::message(&Medit, "a.mesh", text.as_bytes())
 }
 
 /// The bytes before the keyword End, which a file need not have.
@@ -56,11 +56,7 @@ fn the_mixed_mesh_is_that_of_gmsh() {
     let mut files = vec![own("medit").join("mixed.meshb")];
     files.extend(corpus().map(|corpus| corpus.join("medit/meshio_mixed.mesh")));
     for file in files {
-        let name = file.display();
-        let mesh = read(&Medit, &file).expect("readable");
-        for shape in Shape::ALL {
-            assert_eq!(checking::sums(&mesh, shape), checking::sums(&expected, shape), "{name}: {shape}");
-        }
+        testing::same_elements(&testing::read_file(&Medit, &file), &expected, 0.0);
     }
 }
 
@@ -123,6 +119,19 @@ fn two_dimensions_and_no_end() {
     assert_eq!(mesh.elements, [(1, Triangle, vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]])]);
     assert!(read_bytes(format!("{text}Ridges\n2\n1\n2\n").as_bytes()).is_ok());
     assert!(read_bytes(format!("{text}Ridges\n2\n1\n").as_bytes()).is_err());
+}
+
+#[test]
+fn polygons_and_polyhedra_were_passed_over_and_not_counted() {
+    let text = "MeshVersionFormatted 2\nDimension 3\nVertices 3\n0 0 0 1\n1 0 0 1\n0 1 0 1\n\
+                BoundaryPolygonHeaders 2\n1 0\n4 0\nBoundaryPolygonVertices 6\n1\n2\n3\n3\n2\n1\n\
+                InnerPolygonHeaders 1\n1 0\nInnerPolygonVertices 3\n1 2 3\nPolyhedraHeaders 1\n1 0\nPolyhedraFaces 1\n1\nEnd\n";
+    let mesh = read_bytes(text.as_bytes()).expect("readable");
+    assert_eq!(["polygon", "polyhedron"].map(|what| counted(&mesh, what)), [2, 1]);
+    assert_eq!(
+        message(&text.replace("4 0\nB", "4\nB")),
+        "line 10: expected 2 rows of BoundaryPolygonHeaders of 2 numbers each, and not 3 in all, found \"BoundaryPolygonVertices 6\""
+    );
 }
 
 #[test]
@@ -197,7 +206,7 @@ fn errors_name_the_line_and_what_stood_there() {
     );
 }
 
-/// A binary file of two triangles, an edge and a keyword that is not known.
+/// A binary file of two triangles, an edge, two polygons, a polyhedron and a keyword that is not known.
 fn binary(version: u32, big: bool) -> Vec<u8> {
     let (wide, long, real) = (version > 2, version > 3, version > 1);
     let mut bytes = Vec::new();
@@ -236,6 +245,8 @@ fn binary(version: u32, big: bool) -> Vec<u8> {
         }
     });
     table(5, Some(1), &|b| [1, 2, 0].iter().for_each(|id| put(b, *id, word)));
+    table(203, Some(2), &|b| [1, 0, 4, 0].iter().for_each(|k| put(b, *k, word)));
+    table(207, Some(1), &|b| [1, 0].iter().for_each(|k| put(b, *k, word)));
     table(54, None, &|_| ());
     bytes
 }
@@ -248,6 +259,7 @@ fn binary_files_of_all_versions_and_both_byte_orders() {
             assert!(Medit.detect(&bytes));
             let mesh = read_bytes(&bytes).unwrap_or_else(|e| panic!("version {version}, {big}: {e}"));
             assert_eq!((mesh.nodes.count(), counted(&mesh, "line")), (4, 1));
+            assert_eq!(["polygon", "polyhedron"].map(|what| counted(&mesh, what)), [2, 1]);
             let second = (2, Triangle, vec![[1., 0., 0.], [1., 1.5, 0.], [0., 1., 0.]]);
             assert_eq!(mesh.elements[1], second);
             for cut in 12..bytes.len() - 8 {
@@ -263,7 +275,7 @@ fn counts_and_places_of_binary_files_are_not_believed() {
     let with = |at: usize, value: u32| {
         let mut bytes = whole.clone();
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
-        checking::message(&Medit, &bytes)
+        testing::message(&Medit, "a.mesh", &bytes)
     };
     assert_eq!(
         with(28, u32::MAX),

@@ -1,5 +1,6 @@
 //! `.mesh`: words and numbers, whatever lines they stand on.
 
+use super::keywords::Polytopes;
 use super::{Found, keywords};
 use crate::error::{Error, Result};
 use crate::formats::Outline;
@@ -53,6 +54,9 @@ fn keyword(
         let what = format!("rows of {}", keyword.name);
         return outline_elements(reader, Table { what: &what, rows, extra: 1, first }, kind, out);
     }
+    if let Some(polytopes) = Polytopes::by_name(name) {
+        return count(reader, polytopes, out);
+    }
     match name {
         b"meshversionformatted" => match reader.integer("a version")? {
             0..=4 => Ok(()),
@@ -67,6 +71,20 @@ fn keyword(
         }
         _ => skip(reader, name, found),
     }
+}
+
+/// Passes the rows of polygons or polyhedra and counts them.
+fn count(reader: &mut TokenReader<'_>, polytopes: &Polytopes, out: &mut dyn Outline) -> Result<()> {
+    let name = polytopes.name;
+    let rows = reader.integer(&format!("the number of rows of {name}"))?;
+    let numbers = reader.pass_to_word()?;
+    if rows.checked_mul(polytopes.width as u64) != Some(numbers) {
+        reader.more();
+        let width = polytopes.width;
+        let expected = format!("{rows} rows of {name} of {width} numbers each, and not {numbers} in all");
+        return Err(reader.source.malformed_text(reader.position(), expected));
+    }
+    out.count(&polytopes.kind(), rows)
 }
 
 /// Passes a keyword that is not read, with its numbers.

@@ -1,7 +1,7 @@
 //! The reader against a listing and against damage. No printed mesh is public: `tests/meshes/nag` holds a mesh of Gmsh,
 //! laid out as the data files of the library's examples.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::Nag;
 use crate::formats::Format;
@@ -12,7 +12,7 @@ use crate::mesh::Shape::Triangle;
 const OWN: Row = ("pit2d.r", 220, &[(Triangle, 382)], &[]);
 
 fn own() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/nag")
+    testing::own("nag")
 }
 
 fn message(text: &str) -> String {
@@ -32,8 +32,9 @@ fn an_own_file_holds_what_gmsh_counts() {
 #[test]
 fn a_corpus_file_holds_what_others_count() {
     let Some(corpus) = testing::corpus() else { return };
-    testing::check(&Nag, &corpus, &("nag/synthetic_d06_printed_mesh.r", 220, &[(Triangle, 382)], &[]));
-    testing::detects_only(&Nag, &corpus, &["r"], 1);
+    const MESH: &str = "nag/synthetic_d06_printed_mesh.r";
+    testing::check(&Nag, &corpus, &(MESH, 220, &[(Triangle, 382)], &[]));
+    assert_eq!(testing::detected(&Nag, &corpus), [MESH]);
 }
 
 #[test]
@@ -88,5 +89,5 @@ fn titles_of_other_programs_are_not_detected() {
 
 #[test]
 fn a_cut_file_is_an_error_and_a_flipped_bit_no_panic() {
-    testing::damage(&Nag, &own().join(OWN.0), &[]);
+    testing::damage(&Nag, &own().join(OWN.0), testing::last_word);
 }

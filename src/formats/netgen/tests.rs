@@ -3,9 +3,9 @@
 use super::Netgen;
 use crate::error::Result;
 use crate::formats::Format;
-use crate::formats::checking::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::formats::gmsh::Gmsh;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::mesh::Shape::{self, Hexahedron, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
 const MIXED: &[(Shape, usize)] = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
@@ -23,7 +23,7 @@ const CORPUS: &[Row] = &[
 ];
 
 fn read_bytes(text: &str) -> Result<Mesh> {
-    checking::read_bytes(&Netgen, "", text.as_bytes())
+    testing::read_bytes(&Netgen, "a.vol", text.as_bytes())
 }
 
 fn before_end(bytes: &[u8]) -> usize {
@@ -51,7 +51,7 @@ fn the_mixed_mesh_is_that_of_gmsh() {
     let expected = read(&Gmsh, &corpus.join("gmsh/mixed_hex_prism_41.msh")).expect("readable");
     let mesh = read(&Netgen, &corpus.join("netgen/meshio_mixed.vol")).expect("readable");
     for shape in [Triangle, Quadrilateral] {
-        assert_eq!(checking::sums(&mesh, shape), checking::sums(&expected, shape), "{shape}");
+        assert_eq!(testing::corners(&mesh, shape), testing::corners(&expected, shape), "{shape}");
     }
 }
 
@@ -117,9 +117,10 @@ fn errors_name_the_line_and_what_stood_there() {
         ("endmesh\n", "", "line 36: expected endmesh, found the end of the file"),
     ];
     for (from, to, expected) in rows {
-        assert_eq!(checking::message(&Netgen, MESH.replace(from, to).as_bytes()), expected, "{to}");
+        assert_eq!(testing::message(&Netgen, "a.vol", MESH.replace(from, to).as_bytes()), expected, "{to}");
     }
     assert!(
-        checking::message(&Netgen, b"mesh3d\nendmesh\n").contains("expected a section points before endmesh")
+        testing::message(&Netgen, "a.vol", b"mesh3d\nendmesh\n")
+            .contains("expected a section points before endmesh")
     );
 }

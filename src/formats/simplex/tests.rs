@@ -30,13 +30,12 @@ const CORPUS: Rows = &[
 ];
 
 fn own() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")
+    testing::own("")
 }
 
 fn check(folder: &Path, rows: Rows) {
     for (format, row) in rows {
-        testing::check(*format, folder, row);
-        let mesh = testing::read_file(*format, &folder.join(row.0));
+        let mesh = testing::check(*format, folder, row);
         let second = row.0.contains("_o2");
         let order = if second { 2 } else { 1 };
         assert!(
@@ -74,8 +73,9 @@ fn corpus_files_hold_what_others_count() {
 #[test]
 fn only_their_files_of_the_corpus_are_detected() {
     let Some(corpus) = testing::corpus() else { return };
-    testing::detects_only(&TRIANGLE, &corpus, &["ele"], 4);
-    testing::detects_only(&TETGEN, &corpus, &["ele"], 2);
+    let files: Vec<_> = CORPUS.iter().map(|row| row.1.0).collect();
+    assert_eq!(testing::detected(&TRIANGLE, &corpus), files[..4]);
+    assert_eq!(testing::detected(&TETGEN, &corpus), files[4..]);
 }
 
 #[test]
@@ -203,8 +203,8 @@ fn a_cut_file_is_an_error_and_a_flipped_bit_no_panic() {
         for (format, row) in rows {
             let ele = folder.join(row.0);
             let node = ele.with_extension("node");
-            testing::damage(*format, &ele, &[&ele, &node]);
-            testing::damage(*format, &node, &[&ele]);
+            testing::damage_beside(*format, &ele, &[&ele, &node], testing::last_word);
+            testing::damage_beside(*format, &node, &[&ele], testing::last_word);
         }
     };
     damage(&own(), OWN);

@@ -3,9 +3,9 @@
 use super::Su2;
 use crate::error::Result;
 use crate::formats::Format;
-use crate::formats::checking::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::formats::gmsh::Gmsh;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Row, check, corpus, counted, damage, detected, own};
 use crate::mesh::Shape::{self, Hexahedron, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
 const MIXED: &[(Shape, usize)] = &[(Triangle, 28), (Quadrilateral, 36), (Wedge, 28), (Hexahedron, 8)];
@@ -18,7 +18,7 @@ const CORPUS: &[Row] = &[
 ];
 
 fn read_bytes(text: &str) -> Result<Mesh> {
-    checking::read_bytes(&Su2, "", text.as_bytes())
+    testing::read_bytes(&Su2, "a.su2", text.as_bytes())
 }
 
 /// The bytes before the last row of the last marker: that some of its digits are missing cannot be seen.
@@ -42,9 +42,9 @@ fn the_mixed_mesh_is_that_of_gmsh_but_for_its_wedges() {
     let expected = read(&Gmsh, &own("gmsh").join("mixed_hex_prism_41.msh")).expect("readable");
     let mesh = check(&Su2, &own("su2"), &OWN[0]);
     for shape in [Triangle, Quadrilateral, Hexahedron] {
-        assert_eq!(checking::sums(&mesh, shape), checking::sums(&expected, shape), "{shape}");
+        assert_eq!(testing::corners(&mesh, shape), testing::corners(&expected, shape), "{shape}");
     }
-    assert_ne!(checking::sums(&mesh, Wedge), checking::sums(&expected, Wedge));
+    assert_ne!(testing::corners(&mesh, Wedge), testing::corners(&expected, Wedge));
     assert_eq!(Su2.own_orientation(), [Wedge]);
 }
 
@@ -187,10 +187,15 @@ fn errors_name_the_line_and_what_stood_there() {
         ),
     ];
     for (from, to, expected) in rows {
-        assert_eq!(checking::message(&Su2, TETRAHEDRON.replace(from, to).as_bytes()), expected, "{to}");
+        assert_eq!(
+            testing::message(&Su2, "a.su2", TETRAHEDRON.replace(from, to).as_bytes()),
+            expected,
+            "{to}"
+        );
     }
     let long = TETRAHEDRON.replace("10 0 1 2 3 0", &"1 ".repeat(50));
     assert!(
-        checking::message(&Su2, long.as_bytes()).contains("line 5: expected at most 40 numbers in a row")
+        testing::message(&Su2, "a.su2", long.as_bytes())
+            .contains("line 5: expected at most 40 numbers in a row")
     );
 }

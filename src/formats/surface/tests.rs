@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{Obj, Off, Ply, Stl};
 use crate::error::Result;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Random};
 use crate::formats::{FORMATS, Format, HEAD_BYTES};
 use crate::mesh::Shape;
 
@@ -14,9 +15,7 @@ fn bytes_of(path: &Path) -> Vec<u8> {
 }
 
 fn read_bytes(format: &dyn Format, bytes: &[u8]) -> Result<Mesh> {
-    let file = tempfile::NamedTempFile::new().expect("a temporary file");
-    std::fs::write(file.path(), bytes).expect("a temporary file");
-    read(format, file.path())
+    testing::read_bytes(format, "a", bytes)
 }
 
 /// Nodes, triangles, quadrilaterals, polygons and unused nodes.
@@ -75,10 +74,7 @@ fn own_files_have_their_counts_and_areas() {
 
 #[test]
 fn corpus_files_have_the_counts_of_other_readers() {
-    let Some(corpus) = std::env::var_os("MESHGAUGE_CORPUS") else {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-        return;
-    };
+    let Some(corpus) = testing::corpus() else { return };
     let rows: [(&dyn Format, &str, _); 9] = [
         (&Off, "off/elmer_femur.off", (3897, 7798, 0)),
         (&Off, "off/elmer_sample.off", (8, 0, 6)),
@@ -91,7 +87,7 @@ fn corpus_files_have_the_counts_of_other_readers() {
         (&Stl, "stl/gmsh_sphere.stl", (305, 606, 0)),
     ];
     for (format, name, expected) in rows {
-        let mesh = read(format, &Path::new(&corpus).join(name)).expect("a mesh");
+        let mesh = read(format, &corpus.join(name)).expect("a mesh");
         let (nodes, triangles, quadrilaterals, ..) = counts(&mesh);
         assert_eq!((nodes, triangles, quadrilaterals), expected, "{name}");
     }
@@ -104,11 +100,8 @@ fn files_below(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn detection_takes_its_own_files_of_the_corpus_and_no_others() {
-    let Some(corpus) = std::env::var_os("MESHGAUGE_CORPUS") else {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-        return;
-    };
-    for path in files_below(Path::new(&corpus)) {
+    let Some(corpus) = testing::corpus() else { return };
+    for path in files_below(&corpus) {
         let mut head = bytes_of(&path);
         head.truncate(HEAD_BYTES);
         let is_v4 = path.to_string_lossy().contains("_v4.mat");
@@ -118,14 +111,6 @@ fn detection_takes_its_own_files_of_the_corpus_and_no_others() {
             assert_eq!(format.detect(&head), is_own && !is_v4, "{name}: {}", path.display());
         }
     }
-}
-
-/// Pseudo-random numbers, the same on every run.
-fn random(state: &mut u64) -> u64 {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    *state
 }
 
 #[test]
@@ -146,14 +131,14 @@ fn a_file_that_ends_too_early_is_an_error() {
 
 #[test]
 fn a_file_with_flipped_bytes_is_read_or_refused() {
-    let mut state = 0x2007_0412;
+    let mut random = Random(0x2007_0412);
     for (format, path, _) in own() {
         let bytes = bytes_of(&path);
         for _ in 0..200 {
             let mut broken = bytes.clone();
-            for _ in 0..1 + random(&mut state) % 3 {
-                let at = random(&mut state) as usize % broken.len();
-                broken[at] = random(&mut state) as u8;
+            for _ in 0..1 + random.below(3) {
+                let at = random.below(broken.len());
+                broken[at] = random.below(256) as u8;
             }
             if let Err(error) = read_bytes(format, &broken) {
                 let is_missing = matches!(error.kind(), crate::error::Kind::MissingNode { .. });

@@ -1,9 +1,8 @@
 //! Whole files: Gmsh's, those of the corpus, and damaged ones.
 
 use super::Unv;
-use crate::formats::checking::{corpus, damage, detected, message, own, read_bytes};
-use crate::formats::contents::{corners, holds};
 use crate::formats::reading::read;
+use crate::formats::testing::{corpus, damage, detected, holds, message, own, read_bytes, same_elements};
 
 const CORPUS: [(&str, &str); 7] = [
     ("unv/dealii_3D.unv", "216 nodes, Plane Stress Linear Quadrilateral:150 Rod:60 Solid Linear Brick:125"),
@@ -37,7 +36,7 @@ fn gmsh_writes_the_same_mesh_here_as_in_its_own_format() {
         let mesh = read(&Unv, &own("unv").join(format!("gmsh_{name}"))).unwrap_or_else(|e| panic!("{e}"));
         let native =
             read(&crate::formats::gmsh::Gmsh, &own("gmsh").join(msh)).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(corners(&mesh), corners(&native), "{name}");
+        same_elements(&mesh, &native, 1e-6);
     }
 }
 
@@ -78,7 +77,7 @@ fn corners_of_parabolic_solids_stand_on_their_rings() {
         let records: Vec<_> = records.iter().map(String::as_str).collect();
         // Elements before nodes, and words between datasets, are legal.
         let text = format!("{}made by hand\n{}", dataset("2412", &records), nodes(20));
-        let mesh = read_bytes(&Unv, "", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+        let mesh = read_bytes(&Unv, "a.unv", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
         let corners: Vec<_> = mesh.elements[0].2.iter().map(|p| p[0] as u64).collect();
         assert_eq!(corners, expected, "{descriptor}");
     }
@@ -96,8 +95,8 @@ fn old_datasets_are_read() {
     let triangle_71 = dataset("71", &[&integers(&[7, 91, 1, 1, 1, 7, 3]), &integers(&[1, 2, 3])]);
     let triangle_780 = dataset("780", &[&integers(&[7, 91, 1, 1, 1, 1, 7, 3]), &integers(&[1, 2, 3])]);
     for elements in [triangle_71, triangle_780] {
-        let mesh =
-            read_bytes(&Unv, "", format!("{old}{elements}").as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+        let mesh = read_bytes(&Unv, "a.unv", format!("{old}{elements}").as_bytes())
+            .unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(holds(&mesh), "3 nodes, Thin Shell Linear Triangle:1");
         assert_eq!(mesh.elements[0].2[1], [1.0, -1.0, 0.0]);
     }
@@ -113,7 +112,7 @@ fn a_count_that_its_descriptor_does_not_have_is_never_guessed() {
     records.extend([integers(&[3, 122, 1, 1, 7, 9]), integers(&ids[..8]), integers(&[9])]);
     let records: Vec<_> = records.iter().map(String::as_str).collect();
     let text = nodes(27) + &dataset("2412", &records);
-    let mesh = read_bytes(&Unv, "", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let mesh = read_bytes(&Unv, "a.unv", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(holds(&mesh), "27 nodes, Rigid Element:1 Solid Linear Brick of 27 nodes:1 descriptor 300:1");
 }
 
@@ -141,7 +140,7 @@ fn what_is_wrong_is_named() {
         (format!("{}    -1\n    58b     1     2\n", nodes(1)), "line 7: binary datasets (58b) are not read"),
     ];
     for (text, expected) in rows {
-        let error = message(&Unv, text.as_bytes());
+        let error = message(&Unv, "a.unv", text.as_bytes());
         assert!(error.contains(expected), "{error}\n{text}");
     }
 }

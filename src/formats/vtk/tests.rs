@@ -6,6 +6,7 @@ use super::{Legacy, Vtu};
 use crate::error::Result;
 use crate::formats::Format;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Random};
 use crate::mesh::{Class, Shape};
 
 /// One for each of the two formats.
@@ -35,9 +36,7 @@ fn read_any(path: &Path) -> Result<Mesh> {
 
 /// The text or bytes of a file, read as a mesh.
 fn read_bytes(format: &dyn Format, bytes: &[u8]) -> Result<Mesh> {
-    let file = tempfile::NamedTempFile::new().expect("a temporary file");
-    std::fs::write(file.path(), bytes).expect("a temporary file");
-    read(format, file.path())
+    testing::read_bytes(format, "a", bytes)
 }
 
 /// Measured cells by shape.
@@ -112,10 +111,7 @@ type Shapes = &'static [(&'static str, usize)];
 
 #[test]
 fn corpus_files_have_the_counts_of_other_readers() {
-    let Some(corpus) = std::env::var_os("MESHGAUGE_CORPUS") else {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-        return;
-    };
+    let Some(corpus) = testing::corpus() else { return };
     let mixed: Shapes = &[("triangle", 28), ("quadrilateral", 36), ("wedge", 28), ("hexahedron", 8)];
     let quads: Shapes = &[("quadrilateral", 9)];
     let hexahedron: Shapes = &[("hexahedron", 1)];
@@ -163,7 +159,7 @@ fn corpus_files_have_the_counts_of_other_readers() {
     ];
     let mut wrong = Vec::new();
     for (name, nodes, cells, others) in rows {
-        match read_any(&Path::new(&corpus).join(name)) {
+        match read_any(&corpus.join(name)) {
             Err(error) => wrong.push(error.to_string()),
             Ok(mesh)
                 if (mesh.nodes.count(), &shapes(&mesh)[..], counted(&mesh)) != (*nodes, *cells, *others) =>
@@ -174,17 +170,8 @@ fn corpus_files_have_the_counts_of_other_readers() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
-    let error =
-        read_any(&Path::new(&corpus).join("vtu/vtkio_hexahedron_parallel.pvtu")).expect_err("no mesh");
+    let error = read_any(&corpus.join("vtu/vtkio_hexahedron_parallel.pvtu")).expect_err("no mesh");
     assert!(error.to_string().contains("score the pieces"), "{error}");
-}
-
-/// Pseudo-random numbers, the same on every run.
-fn random(state: &mut u64) -> u64 {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    *state
 }
 
 #[test]
@@ -210,15 +197,15 @@ fn a_file_that_ends_too_early_is_an_error() {
 
 #[test]
 fn a_file_with_flipped_bytes_is_read_or_refused() {
-    let mut state = 0x2007_0301;
+    let mut random = Random(0x2007_0301);
     for file in own() {
         let bytes = bytes_of(&file);
         let format: &dyn Format = if file.extension().is_some_and(|e| e == "vtk") { &Legacy } else { &Vtu };
         for _ in 0..200 {
             let mut broken = bytes.clone();
-            for _ in 0..1 + random(&mut state) % 3 {
-                let at = random(&mut state) as usize % broken.len();
-                broken[at] = random(&mut state) as u8;
+            for _ in 0..1 + random.below(3) {
+                let at = random.below(broken.len());
+                broken[at] = random.below(256) as u8;
             }
             if let Err(error) = read_bytes(format, &broken) {
                 assert!(!error.is_resource() && error.path().is_some(), "{error}");

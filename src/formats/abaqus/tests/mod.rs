@@ -4,23 +4,19 @@ mod corpus;
 mod faults;
 mod quirks;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Abaqus;
 use crate::error::Result;
+use crate::formats::Format;
 use crate::formats::reading::{Mesh, read};
-use crate::formats::{Format, HEAD_BYTES};
-use crate::input::{Input, Limits, Scratch};
+use crate::formats::testing::{self, corpus, head};
 use crate::mesh::Shape::{Hexahedron, Quadrilateral, Tetrahedron, Triangle, Wedge};
 use crate::mesh::{Class, Shape};
 
 /// Writes the files into one folder and reads the first.
 fn read_files(files: &[(&str, &[u8])]) -> Result<Mesh> {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).expect("written");
-    }
-    read(&Abaqus, &folder.path().join(files[0].0))
+    testing::read_files(&Abaqus, files[0].0, files)
 }
 
 fn read_text(text: &str) -> Result<Mesh> {
@@ -43,21 +39,6 @@ fn error(text: &str) -> String {
 fn types(mesh: &Mesh) -> String {
     let types = mesh.ledger.types.iter().map(|t| format!("{}:{}", t.name, t.count));
     types.collect::<Vec<_>>().join(" ")
-}
-
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("MESHGAUGE_CORPUS").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-    }
-    folder
-}
-
-/// The first bytes of a file, as detection sees them.
-fn head(path: &Path) -> Vec<u8> {
-    let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
-    let input = Input::open(path, &Limits::default(), &scratch).expect("a file of the corpus");
-    input.source.peek(0..HEAD_BYTES as u64).to_vec()
 }
 
 const SQUARE: &str = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n";

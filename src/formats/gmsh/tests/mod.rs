@@ -1,52 +1,27 @@
 //! The reader against files of Gmsh and others, against hand-made files of every odd kind, and against damage.
 
-#![expect(clippy::disallowed_methods, reason = "meshes of known size are read whole, to be cut and damaged")]
-
 mod written;
 
-use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::Gmsh;
-use crate::error::{At, Result};
-use crate::formats::Format;
+use crate::error::Result;
 use crate::formats::reading::{Mesh, read};
+use crate::formats::testing::{self, Row, check, corpus, counted, damage, detected};
 use crate::mesh::Shape::{self, Hexahedron, Quadrilateral, Triangle, Wedge};
 
-/// Reads `bytes` as a file.
 fn read_bytes(bytes: &[u8]) -> Result<Mesh> {
-    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
-    file.write_all(bytes).expect("a temporary file");
-    read(&Gmsh, file.path())
+    testing::read_bytes(&Gmsh, "a.msh", bytes)
 }
 
 fn message(bytes: &[u8]) -> String {
-    let error = read_bytes(bytes).expect_err("an error");
-    let text = error.to_string();
-    let path = error.path().map(|p| format!("{}: ", p.display())).unwrap_or_default();
-    text.trim_start_matches(&path).to_owned()
-}
-
-/// Number of elements that are not measured, under the name `what`.
-fn counted(mesh: &Mesh, what: &str) -> u64 {
-    let is = |class: &crate::mesh::Class| *class == crate::mesh::Class::Counted(what.to_owned().into());
-    mesh.ledger.types.iter().filter(|t| is(&t.class)).map(|t| t.count).sum()
+    testing::message(&Gmsh, "a.msh", bytes)
 }
 
 fn own(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/gmsh").join(name)
-}
-
-/// The folder that a variable of the environment names, or nothing, said aloud.
-fn folder(variable: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os(variable).map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: {variable} names no folder");
-    }
-    folder
+    testing::own("gmsh").join(name)
 }
 
 /// Two sums over all corners, by which a peer's mesh is known: see tests/peers/gmsh_encodings.py.
@@ -61,8 +36,6 @@ fn sums(mesh: &Mesh) -> (f64, f64) {
     }
     (sum, squares)
 }
-
-type Row = (&'static str, u64, &'static [(Shape, usize)], &'static [(&'static str, u64)]);
 
 /// File, nodes, measured elements, counted elements.
 const OWN: &[Row] = &[
@@ -93,23 +66,9 @@ const CORPUS: &[Row] = &[
     ("synthetic_22_bin_no_newline.msh", 220, &[(Triangle, 382)], &[("line", 56)]),
 ];
 
-fn check(folder: &Path, (name, nodes, measured, others): &Row) {
-    let mesh = read(&Gmsh, &folder.join(name)).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(mesh.nodes.count(), *nodes, "{name}");
-    for shape in Shape::ALL {
-        let count = measured.iter().find(|m| m.0 == shape).map_or(0, |m| m.1);
-        assert_eq!(mesh.count(shape), count, "{name}: {shape}");
-    }
-    for (what, count) in *others {
-        assert_eq!(counted(&mesh, what), *count, "{name}: {what}");
-    }
-    let total = mesh.elements.len() as u64 + others.iter().map(|o| o.1).sum::<u64>();
-    assert_eq!(mesh.ledger.types.iter().map(|t| t.count).sum::<u64>(), total, "{name}");
-}
-
 #[test]
 fn own_files_hold_what_gmsh_counts() {
-    OWN.iter().for_each(|row| check(&own(""), row));
+    OWN.iter().for_each(|row| drop(check(&Gmsh, &own(""), row)));
     let order = read(&Gmsh, &own("pit2d_o2_41_ascii.msh")).expect("readable").ledger;
     let triangles = order.types.iter().find(|t| t.name == "Triangle 6").expect("its triangles");
     assert!(matches!(triangles.class, crate::mesh::Class::Measured { order: 2, .. }));
@@ -131,32 +90,20 @@ fn one_mesh_in_six_encodings_is_one_mesh() {
 
 #[test]
 fn corpus_files_hold_what_others_count() {
-    let Some(corpus) = folder("MESHGAUGE_CORPUS") else { return };
-    CORPUS.iter().chain(OWN).for_each(|row| check(&corpus.join("gmsh"), row));
+    let Some(corpus) = corpus() else { return };
+    CORPUS.iter().chain(OWN).for_each(|row| drop(check(&Gmsh, &corpus.join("gmsh"), row)));
 }
 
 #[test]
 fn only_gmsh_files_of_the_corpus_are_detected() {
-    let Some(corpus) = folder("MESHGAUGE_CORPUS") else { return };
-    let mut folders = vec![corpus];
-    let mut detected = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path()) {
-            if entry.is_dir() {
-                folders.push(entry);
-                continue;
-            }
-            let bytes = fs::read(&entry).expect("readable");
-            let ours = entry.extension().is_some_and(|e| e == "msh");
-            let head = &bytes[..bytes.len().min(crate::formats::HEAD_BYTES)];
-            assert_eq!(Gmsh.detect(head), ours, "{}", entry.display());
-            detected += usize::from(ours);
-        }
-    }
-    assert_eq!(detected, CORPUS.len() + OWN.len());
+    let Some(corpus) = corpus() else { return };
+    let mut expected: Vec<_> = CORPUS.iter().chain(OWN).map(|row| format!("gmsh/{}", row.0)).collect();
+    expected.sort();
+    assert_eq!(detected(&Gmsh, &corpus), expected);
 }
 
 #[test]
+#[expect(clippy::disallowed_methods, reason = "the test's own small file")]
 fn every_encoding_that_peers_write_is_read_as_they_see_it() {
     let Some(python) = std::env::var_os("MESHGAUGE_PYTHON") else {
         eprintln!("skipped: MESHGAUGE_PYTHON names no Python with gmsh and meshio");
@@ -167,7 +114,7 @@ fn every_encoding_that_peers_write_is_read_as_they_see_it() {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers/gmsh_encodings.py");
     let status = std::process::Command::new(python).arg(script).arg(folder).status();
     assert!(status.expect("Python").success());
-    let rows = fs::read_to_string(folder.join("expected.jsonl")).expect("expected.jsonl");
+    let rows = std::fs::read_to_string(folder.join("expected.jsonl")).expect("expected.jsonl");
     for row in rows.lines() {
         let row: Value = serde_json::from_str(row).expect("a row");
         let name = row["file"].as_str().expect("a name");
@@ -183,48 +130,20 @@ fn every_encoding_that_peers_write_is_read_as_they_see_it() {
     }
 }
 
-/// Numbers that are the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 % end as u64) as usize
-    }
-}
-
-fn damage(folder: &Path, row: &Row) {
-    let bytes = fs::read(folder.join(row.0)).expect("readable");
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    let sections = [&b"$EndElements"[..], b"$ENDELM"]
-        .map(|end| memchr::memmem::rfind(&bytes, end).map(|k| k + end.len()));
-    let whole = sections.into_iter().flatten().max().expect("the end of the elements");
-    for _ in 0..50 {
-        let cut = random.below(whole);
-        let error = read_bytes(&bytes[..cut]).expect_err(&format!("{} cut at {cut}", row.0));
-        assert!(
-            error.path().is_some() && matches!(error.place(), Some(At::Line(_) | At::Byte(_))),
-            "{error}"
-        );
-    }
-    for _ in 0..200 {
-        let mut flipped = bytes.clone();
-        flipped[random.below(bytes.len())] ^= 1 << random.below(8);
-        if let Err(error) = read_bytes(&flipped) {
-            assert!(error.path().is_some() && error.place().is_some(), "{}: {error}", row.0);
-        }
-    }
+/// The bytes up to the end of the elements.
+fn elements_end(bytes: &[u8]) -> usize {
+    let ends = [&b"$EndElements"[..], b"$ENDELM"];
+    let ends = ends.map(|end| memchr::memmem::rfind(bytes, end).map(|k| k + end.len()));
+    ends.into_iter().flatten().max().expect("the end of the elements")
 }
 
 #[test]
 fn a_cut_file_is_an_error_and_a_flipped_bit_no_panic() {
-    OWN.iter().for_each(|row| damage(&own(""), row));
+    OWN.iter().for_each(|row| damage(&Gmsh, &own(row.0), elements_end));
 }
 
 #[test]
 fn damaged_corpus_files_are_errors_too() {
-    let Some(corpus) = folder("MESHGAUGE_CORPUS") else { return };
-    CORPUS.iter().for_each(|row| damage(&corpus.join("gmsh"), row));
+    let Some(corpus) = corpus() else { return };
+    CORPUS.iter().for_each(|row| damage(&Gmsh, &corpus.join("gmsh").join(row.0), elements_end));
 }

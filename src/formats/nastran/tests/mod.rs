@@ -4,23 +4,20 @@ mod corpus;
 mod faults;
 mod quirks;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Nastran;
 use crate::error::Result;
 use crate::formats::reading::{Mesh, read};
-use crate::formats::{FORMATS, Format, HEAD_BYTES};
+use crate::formats::testing::{self, corpus, head};
+use crate::formats::{FORMATS, Format};
 use crate::input::{Input, Limits, Scratch};
 use crate::mesh::Class;
 use crate::mesh::Shape::{self, Hexahedron, Quadrilateral, Tetrahedron, Triangle, Wedge};
 
 /// Writes the files into one folder and reads the first.
 fn read_files(files: &[(&str, &[u8])]) -> Result<Mesh> {
-    let folder = tempfile::tempdir().expect("a scratch folder");
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).expect("written");
-    }
-    read(&Nastran, &folder.path().join(files[0].0))
+    testing::read_files(&Nastran, files[0].0, files)
 }
 
 #[track_caller]
@@ -71,21 +68,6 @@ fn at_first_corner(shape: Shape, c: &[[f64; 3]]) -> f64 {
     a[0] * (b[1] * c[2] - b[2] * c[1])
         + a[1] * (b[2] * c[0] - b[0] * c[2])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
-}
-
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("MESHGAUGE_CORPUS").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: MESHGAUGE_CORPUS is not set");
-    }
-    folder
-}
-
-/// The first bytes of a file, as detection sees them.
-fn head(path: &Path) -> Vec<u8> {
-    let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
-    let input = Input::open(path, &Limits::default(), &scratch).expect("a file of the corpus");
-    input.source.peek(0..HEAD_BYTES as u64).to_vec()
 }
 
 /// Four nodes of a unit square.
