@@ -68,13 +68,15 @@ impl Format for Nag {
         if source.peek(walk.at()..walk.at() + 1).is_empty() {
             return Err(walk.truncated("the end of the last row's line"));
         }
-        match self::counts(input, walk.at())? {
-            None => Ok(()),
-            Some((_, at)) => {
+        let mut lines = LineReader::new(source, &input.limits, walk.at());
+        while let Some(line) = lines.next_line()? {
+            let mut words = text::tokens(line.at, line.bytes).peekable();
+            if words.peek().is_some() && words.all(|word| text::real(word.bytes).is_some()) {
                 let error = Error::unsupported("a listing with numbers after its mesh is not read");
-                Err(source.place(error, Spot::Text(at - 1)))
+                return Err(source.place(error, Spot::Text(line.at)));
             }
         }
+        Ok(())
     }
 }
 

@@ -89,19 +89,20 @@ impl Format for Simplex {
     }
 
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
+        // A file that is no .ele file is told so, and not that it lacks a .node file.
+        let (kind, elements) = self.elements_table(input)?;
         let nodes = open_nodes(input)?;
         let (dimension, table) = nodes_table(&nodes, &input.limits)?;
         let layout: Arc<dyn NodeLayout> = Arc::new(NodeRows { source: Arc::clone(&nodes), dimension });
         table.cut("nodes", |span| out.nodes(Piece { layout: Arc::clone(&layout), span }))?;
 
-        let (kind, table) = self.elements_table(input)?;
         if kind.shape() == Some(Shape::Tetrahedron) && dimension < 3 {
             let error = Error::malformed("nodes with 3 coordinates for tetrahedra", format!("{dimension}"));
             return Err(nodes.place(error, Spot::Text(0)));
         }
         let source = Arc::clone(&input.source);
         let layout: Arc<dyn ElementLayout> = Arc::new(ElementRows { source, kind });
-        table.cut("elements", |span| out.elements(Piece { layout: Arc::clone(&layout), span }))
+        elements.cut("elements", |span| out.elements(Piece { layout: Arc::clone(&layout), span }))
     }
 }
 

@@ -47,6 +47,19 @@ pub fn attempt_bytes(name: &str, bytes: &[u8], what: &str) -> Result<Summary> {
     attempt(&path, what)
 }
 
+/// Has a go at the bytes in place of those of a mesh: under its name, and with the file of its nodes beside it.
+#[track_caller]
+pub fn attempt_in_place(mesh: &Path, bytes: &[u8], what: &str) -> Result<Summary> {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join(mesh.file_name().expect("a name"));
+    std::fs::write(&path, bytes).expect("written");
+    let nodes = mesh.with_extension("node");
+    if nodes.exists() {
+        std::fs::copy(&nodes, path.with_extension("node")).expect("copied");
+    }
+    attempt(&path, what)
+}
+
 #[track_caller]
 pub fn refused(result: Result<Summary>, what: &str) -> Error {
     match result {

@@ -5,9 +5,9 @@ use std::fs;
 use meshgauge::error::Kind;
 use meshgauge::input::Compression;
 
-use crate::attempt::{assert_line, attempt_bytes, refused};
+use crate::attempt::{assert_line, attempt_in_place, refused};
 use crate::packing::pack;
-use crate::{Random, own_meshes};
+use crate::{Random, own_meshes, places};
 
 /// Whether a cut leaves a whole mesh, by what is kept and what is lost.
 type Unseen = fn(&[u8], &[u8]) -> bool;
@@ -26,6 +26,16 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("abaqus", in_elements_at_end_of_line, "a deck has no end mark: it may well end with any element"),
     ("nastran", after_first_element, "a deck may lack ENDDATA: it may well end with any card"),
     ("abaqus", within_last_node, "a node's number is still one without its last digits"),
+    ("su2", within_last_number, "the last number is still one without its last digits"),
+    ("su2", |_, lost| starts_with_any(lost, &["NMARK"]), "markers are the boundary, which may be left out"),
+    ("triangle", in_last_comment, "a comment says who wrote the file"),
+    ("tetgen", in_last_comment, "a comment says who wrote the file"),
+    ("medit", between_tables, "End may be missing, and any table may be the last"),
+    ("obj", after_first_face, "there are no counts and no end mark: a file may well end with any face"),
+    ("ansys", outside_blocks, "an archive may well end after any EBLOCK"),
+    ("lsdyna", after_first_card, "a deck may lack *END: it may well end with any card"),
+    ("frd", after_elements, "results come after the mesh"),
+    ("femgv", after_elements, "results come after the mesh"),
 ];
 
 fn starts_with_any(bytes: &[u8], words: &[&str]) -> bool {
@@ -56,10 +66,50 @@ fn in_elements_at_end_of_line(kept: &[u8], lost: &[u8]) -> bool {
     elements && (kept.ends_with(b"\n") || lost.starts_with(b"\n") || lost.starts_with(b"\r"))
 }
 
+/// A table of elements or End would follow.
+fn between_tables(kept: &[u8], lost: &[u8]) -> bool {
+    kept.is_ascii()
+        && contains(kept, b"Vertices")
+        && starts_with_any(lost, &["Tetrahedra", "Triangles", "End"])
+}
+
+fn in_last_comment(kept: &[u8], lost: &[u8]) -> bool {
+    let line = kept.rsplit(|b| *b == b'\n').next().unwrap_or_default();
+    line.starts_with(b"#") || (line.is_empty() && lost.starts_with(b"#"))
+}
+
+fn ends_line(kept: &[u8], lost: &[u8]) -> bool {
+    kept.ends_with(b"\n") || lost.starts_with(b"\n")
+}
+
+fn after_first_face(kept: &[u8], lost: &[u8]) -> bool {
+    contains(kept, b"\nf ") && ends_line(kept, lost)
+}
+
+fn after_first_card(kept: &[u8], lost: &[u8]) -> bool {
+    memchr::memmem::find(kept, b"*ELEMENT").is_some_and(|at| kept[at..].contains(&b'\n'))
+        && (ends_line(kept, lost) || within_keyword(kept))
+}
+
+/// A keyword lost its end, so that it is none that is known, or a comment did.
+fn within_keyword(kept: &[u8]) -> bool {
+    let line = kept.rsplit(|b| *b == b'\n').next();
+    line.is_some_and(|line| line.starts_with(b"*") || line.starts_with(b"$"))
+}
+
+/// The last of the blocks has its end mark.
+fn outside_blocks(kept: &[u8], _: &[u8]) -> bool {
+    let last = |what: &[u8]| memchr::memmem::rfind(kept, what);
+    last(b"EBLOCK,").is_some_and(|block| last(b" -1").is_some_and(|mark| block < mark))
+}
+
+fn after_elements(kept: &[u8], _: &[u8]) -> bool {
+    memchr::memmem::find(kept, b"    3C").is_some_and(|at| contains(&kept[at..], b"\n -3"))
+}
+
 /// A card ends here.
 fn after_first_element(kept: &[u8], lost: &[u8]) -> bool {
-    let ended = kept.ends_with(b"\n") || lost.starts_with(b"\n");
-    contains(kept, b"\nC") && ended
+    contains(kept, b"\nC") && ends_line(kept, lost)
 }
 
 /// All commas of the line are there, and something of its last number.
@@ -79,7 +129,7 @@ fn sections(bytes: &[u8]) -> Vec<usize> {
         }
     }
     // Noise in binary data looks like marks as well.
-    let step = found.len().div_ceil(200).max(1);
+    let step = found.len().div_ceil(places(60, 200)).max(1);
     found.into_iter().step_by(step).collect()
 }
 
@@ -90,11 +140,11 @@ fn a_mesh_that_ends_too_early_is_an_error() {
         let bytes = fs::read(&path).expect("readable");
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let is_text = bytes.is_ascii() && matches!(format, "gmsh" | "abaqus" | "nastran" | "vtk");
-        let places = (0..50).map(|_| random.below(bytes.len()));
-        for cut in sections(&bytes).into_iter().chain(places.collect::<Vec<_>>()) {
+        let anywhere = (0..places(12, 50)).map(|_| random.below(bytes.len()));
+        for cut in sections(&bytes).into_iter().chain(anywhere.collect::<Vec<_>>()) {
             let what = format!("{format}/{name} cut to {cut} of {} bytes", bytes.len());
             let (kept, lost) = bytes.split_at(cut);
-            let result = attempt_bytes(&name, kept, &what);
+            let result = attempt_in_place(&path, kept, &what);
             let unseen =
                 UNSEEN.iter().any(|row| (row.0.is_empty() || row.0 == format) && (row.1)(kept, lost));
             if !(result.is_ok() && unseen) {
@@ -117,10 +167,10 @@ fn a_packed_mesh_that_ends_too_early_is_an_error() {
         let bytes = fs::read(&path).expect("readable");
         for compression in Compression::ALL {
             let packed = pack(compression, &bytes);
-            let places = (0..10).map(|_| 1 + random.below(packed.len() - 1)).chain([1, packed.len() - 1]);
-            for cut in places.collect::<Vec<_>>() {
+            let anywhere = (0..places(4, 10)).map(|_| 1 + random.below(packed.len() - 1));
+            for cut in anywhere.chain([1, packed.len() - 1]).collect::<Vec<_>>() {
                 let what = format!("{format}, {} cut to {cut} of {}", compression.name(), packed.len());
-                let error = refused(attempt_bytes("x", &packed[..cut], &what), &what);
+                let error = refused(attempt_in_place(&path, &packed[..cut], &what), &what);
                 let fits = match error.kind() {
                     Kind::Malformed { .. } => error.format() == Some(compression.name()),
                     kind => matches!(kind, Kind::UnknownFormat(_)) && cut < Compression::HEAD_BYTES,
@@ -129,4 +179,48 @@ fn a_packed_mesh_that_ends_too_early_is_an_error() {
             }
         }
     }
+}
+
+/// Texts that are sound with the end of their last line and not without it: the last number may have lost digits, the
+/// last face corners.
+#[test]
+fn a_last_line_without_its_end_is_an_error_where_nothing_else_ends_the_mesh() {
+    let rows = [
+        ("x.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("x.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+        (
+            "x.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+             element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+        ),
+        ("x.k", "*KEYWORD\n*NODE\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n*ELEMENT_SHELL\n1,1,1,2,3,3\n"),
+        ("x.ugrid", "4 0 0 1 0 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 2 3 4\n"),
+    ];
+    for (name, text) in rows {
+        let path = std::path::Path::new(name);
+        let whole = attempt_in_place(path, text.as_bytes(), name).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(whole.elements.count, 1, "{name}");
+        let error = refused(attempt_in_place(path, text.trim_end().as_bytes(), name), name);
+        assert!(
+            error.to_string().contains("line") && error.to_string().contains("the end of the file"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_marker_of_su2_without_its_elements_is_an_error() {
+    let mesh = "NDIME= 2\nNELEM= 1\n5 0 1 2 0\nNPOIN= 3\n0 0 0\n1 0 1\n0 1 2\nNMARK= 1\nMARKER_TAG= wall\n";
+    let path = std::path::Path::new("x.su2");
+    refused(attempt_in_place(path, mesh.as_bytes(), "no elements"), "no elements");
+    let whole = format!("{mesh}MARKER_ELEMS= 1\n3 0 1\n");
+    assert!(attempt_in_place(path, whole.as_bytes(), "whole").is_ok());
+}
+
+#[test]
+fn vertices_of_medit_without_elements_or_end_are_an_error() {
+    let mesh = "MeshVersionFormatted 2\nDimension 3\nVertices\n3\n0 0 0 0\n1 0 0 0\n0 1 0 0\n";
+    let path = std::path::Path::new("x.mesh");
+    let error = refused(attempt_in_place(path, mesh.as_bytes(), "no elements"), "no elements").to_string();
+    assert!(error.contains("elements, or the keyword End"), "{error}");
 }

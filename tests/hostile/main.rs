@@ -30,13 +30,17 @@ fn own_meshes() -> Vec<(&'static str, PathBuf)> {
         let folder = meshes.join(format.name());
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
         let paths = entries.map(|entry| entry.expect("an entry").path());
-        found.extend(
-            paths.filter(|p| p.extension().is_some_and(|e| e != "jsonl")).map(|p| (format.name(), p)),
-        );
+        let is_mesh = |path: &PathBuf| path.extension().is_some_and(|e| e != "jsonl" && e != "node");
+        found.extend(paths.filter(is_mesh).map(|p| (format.name(), p)));
     }
     found.sort();
     assert!(found.len() >= 20, "{found:?}");
     found
+}
+
+/// How many places of each mesh to damage: few in daily runs, all with MESHGAUGE_HOSTILE=full in the environment.
+fn places(few: usize, all: usize) -> usize {
+    if std::env::var_os("MESHGAUGE_HOSTILE").is_some_and(|value| value == "full") { all } else { few }
 }
 
 /// Numbers that are the same in every run.

@@ -53,6 +53,16 @@ enum Open {
     Elements(Arc<ElementCards>),
 }
 
+/// Where `*END` is missing, the last card must not end within a number. In fixed columns it may lack a line end.
+fn ends_with_whole_field(source: &Source) -> Result<()> {
+    let len = source.len();
+    let card = source.peek(len.saturating_sub(256)..len).rsplit(|b| *b == b'\n').next().unwrap_or_default();
+    if is_comment(card) || (card.len().is_multiple_of(8) && !card.contains(&b',')) {
+        return Ok(());
+    }
+    Err(source.malformed_text(len, "the end of the line of the last card, or *END"))
+}
+
 impl<'a> Deck<'a> {
     pub(super) fn new(input: &'a Input, out: &'a mut dyn Outline) -> Self {
         let head = input.source.peek(0..80);
@@ -82,7 +92,9 @@ impl<'a> Deck<'a> {
                 if let Some(span) = gathered.end(at) {
                     self.piece(&open, span)?;
                 }
-                let Some(line) = line else { return Ok(()) };
+                let Some(line) = line else {
+                    return if matches!(open, Open::Other) { Ok(()) } else { ends_with_whole_field(source) };
+                };
                 let keyword = Keyword::read(line.bytes);
                 if keyword.name == "END" {
                     return Ok(());

@@ -14,7 +14,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
 use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, Piece};
-use crate::input::{Input, Source};
+use crate::input::{Input, Source, Spot};
 use choose::{Choice, Group};
 use store::Records;
 
@@ -45,7 +45,7 @@ impl Format for Matlab {
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let source = &input.source;
         let Choice { points, groups, edges } =
-            choose::choose(contents::read(input)?).map_err(|error| error.in_file(source.path()))?;
+            choose::choose(contents::read(input)?).map_err(|e| source.place(e, Spot::Binary(0)))?;
         let (count, width) = (points.count(), 8 * points.width() as u64);
         let layout = Arc::new(Points { source: Arc::clone(source), records: points });
         cut_records(count, width, |span| out.nodes(Piece { layout: layout.clone(), span }))?;

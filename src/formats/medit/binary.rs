@@ -35,7 +35,7 @@ pub(super) fn outline(input: &Input, endian: Endian, out: &mut dyn Outline) -> R
         };
         done.map_err(|e| input.source.place(e, Spot::Binary(link.at)))?;
     }
-    found.check(input)
+    found.check(&input.source, Spot::Binary(input.source.len()))
 }
 
 /// A keyword in the file: its own place, and the bytes of what belongs to it.

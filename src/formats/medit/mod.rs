@@ -13,7 +13,7 @@ mod text;
 use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
 use crate::formats::{Format, Outline};
-use crate::input::Input;
+use crate::input::{Input, Source, Spot};
 
 /// The format's row in the table of formats.
 pub(super) struct Medit;
@@ -95,15 +95,15 @@ impl Found {
     }
 
     /// What must hold at the end.
-    fn check(&self, input: &Input) -> Result<()> {
+    fn check(&self, source: &Source, end: Spot) -> Result<()> {
         if self.vertices.is_none() {
-            return Err(Error::malformed("Vertices", "none in the file").in_file(input.source.path()));
+            return Err(source.place(Error::malformed("Vertices", "none in the file"), end));
         }
         match self.ordered.iter().find(|name| self.tables.contains(&name.as_str())) {
-            Some(name) => Err(Error::unsupported(format!(
-                "{name}Ordering gives the nodes an order of its own, which is not read"
-            ))
-            .in_file(input.source.path())),
+            Some(name) => {
+                let what = format!("{name}Ordering gives the nodes an order of its own, which is not read");
+                Err(source.place(Error::unsupported(what), end))
+            }
             None => Ok(()),
         }
     }

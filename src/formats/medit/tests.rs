@@ -198,11 +198,11 @@ fn errors_name_the_line_and_what_stood_there() {
         .replace("1 2 3 1", "1 2 3 1 2 3 1");
     assert_eq!(
         message(&ordered),
-        "TrianglesP2Ordering gives the nodes an order of its own, which is not read"
+        "line 9: TrianglesP2Ordering gives the nodes an order of its own, which is not read"
     );
     assert_eq!(
         message("MeshVersionFormatted 2\nDimension 3\nEnd"),
-        "expected Vertices, found none in the file"
+        "line 3: expected Vertices, found none in the file"
     );
 }
 

@@ -21,16 +21,21 @@ pub(super) fn is_text(head: &[u8]) -> bool {
 
 pub(super) fn outline(input: &Input, out: &mut dyn Outline) -> Result<()> {
     let mut reader = TokenReader::new(input, b'#');
-    let mut found = Found::new();
+    let (mut found, mut ended) = (Found::new(), false);
     while let Some(word) = reader.token()? {
         let (at, name) = (word.at, word.bytes.to_ascii_lowercase());
         if name == b"end" {
+            ended = true;
             break;
         }
         let done = keyword(&mut reader, &name, &mut found, out);
         done.map_err(|e| input.source.place(e, Spot::Text(at)))?;
     }
-    found.check(input)
+    // Without End, a file that lacks elements is one that lost them.
+    if !ended && found.vertices.is_some() && found.tables.is_empty() {
+        return Err(input.source.malformed_text(input.source.len(), "elements, or the keyword End"));
+    }
+    found.check(&input.source, Spot::Text(reader.position()))
 }
 
 /// Reads what follows a keyword, which is in lower case.

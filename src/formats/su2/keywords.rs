@@ -121,11 +121,9 @@ impl Reader<'_> {
                 self.zone.markers_said = said;
                 Ok(())
             }
-            (b"MARKER_TAG", _) => {
-                self.zone.markers += 1;
-                Ok(())
-            }
+            (b"MARKER_TAG", _) => Ok(()),
             (b"MARKER_ELEMS", Some(count)) => {
+                self.zone.markers += 1;
                 self.pass_send_to()?;
                 self.elements(count, "rows of MARKER_ELEMS")
             }

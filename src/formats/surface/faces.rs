@@ -3,6 +3,7 @@
 use std::sync::{Arc, LazyLock};
 
 use crate::error::{Error, Result};
+use crate::input::{Source, Spot};
 use crate::mesh::{ElementType, Shape};
 
 static FACES: LazyLock<[Arc<ElementType>; 5]> = LazyLock::new(|| {
@@ -41,7 +42,7 @@ pub(super) fn triangle() -> &'static Arc<ElementType> {
     &FACES[2]
 }
 
-/// The error of a file that defines points and no faces.
-pub(super) fn none() -> Error {
-    Error::malformed("one face or more", "points alone")
+/// The error of a file that defines points and no faces, up to byte `at`.
+pub(super) fn none(source: &Source, at: u64) -> Error {
+    source.place(Error::malformed("one face or more", "points alone"), Spot::Text(at))
 }

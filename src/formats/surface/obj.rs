@@ -59,6 +59,10 @@ impl Format for Obj {
                 Keyword::Face | Keyword::Line | Keyword::Point | Keyword::FreeForm => elements += 1,
                 Keyword::Other => {}
             }
+            // A face that lost a corner is a face, and OBJ has no end mark.
+            if lines.position() > source.len() && keyword != Keyword::Other {
+                return Err(source.malformed_text(source.len(), "the end of the line of the last statement"));
+            }
             let to = lines.position().min(source.len());
             if to - from >= PIECE_BYTES || to == source.len() {
                 let next = Part { source: Arc::clone(source), vertices, elements };
@@ -67,7 +71,7 @@ impl Format for Obj {
             }
         }
         if elements == 0 {
-            return Err(faces::none().in_file(source.path()));
+            return Err(faces::none(source, source.len()));
         }
         Ok(())
     }

@@ -43,7 +43,7 @@ impl Format for Off {
             out.nodes(Piece { layout: Arc::clone(&layout), span })
         })?;
         if faces == 0 {
-            return Err(faces::none().in_file(source.path()));
+            return Err(faces::none(source, lines.position().min(source.len())));
         }
         rows::cut(source, &mut lines, faces, "faces", |span, first| {
             out.elements(Piece { layout: Arc::new(Faces { source: Arc::clone(source), first }), span })

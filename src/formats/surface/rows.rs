@@ -33,7 +33,12 @@ pub(super) fn cut(
                 }
             }
         }
-        let to = lines.position().min(source.len());
+        // A number that is cut short is still a number.
+        if lines.position() > source.len() {
+            let expected = format!("the end of the line of one of the {count} {what}");
+            return Err(source.malformed_text(source.len(), expected));
+        }
+        let to = lines.position();
         if to - from >= PIECE_BYTES || row + 1 == count {
             piece(from..to, first)?;
             (from, first) = (to, row + 1);

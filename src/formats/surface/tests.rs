@@ -260,7 +260,7 @@ fn what_is_wrong_with_a_ply_file_is_said() {
 #[test]
 fn obj_with_relative_references_polygons_and_long_statements() {
     let text = "# C:\\meshes\\\r\nmtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0 \\\n 1.0\nf -3 -2 -1\nv 0 1 0\nvt 0 0\nvn 0 0 1\n\
-        g side\nf 1/1 2/1/1 3//1 \\\n4\nf 1 2 3 4 1\nl 1 2 3\np 1 2\ncurv 0 1 1 2\nf 1 2 4 # the last";
+        g side\nf 1/1 2/1/1 3//1 \\\n4\nf 1 2 3 4 1\nl 1 2 3\np 1 2\ncurv 0 1 1 2\nf 1 2 4 # the last\n";
     let mesh = read_bytes(&Obj, text.as_bytes()).expect("a mesh");
     assert_eq!(counts(&mesh), (4, 2, 1, 1, 0));
     assert_eq!(mesh.elements[0].2, [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);

@@ -86,11 +86,14 @@ impl Variant {
 
 /// Whether a file with this head can be one; `whole` says that it has no more bytes.
 pub(super) fn is_likely(head: &[u8], whole: bool) -> bool {
-    VARIANTS.iter().any(|variant| {
-        variant.counts(head).is_some_and(|counts| {
-            variant.has_coordinates(&counts, head) && (!whole || variant.size(&counts) == head.len() as u128)
+    // Letters taken for numbers are counts of a thousand million, seven times over.
+    !head.iter().take(28).all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
+        && VARIANTS.iter().any(|variant| {
+            variant.counts(head).is_some_and(|counts| {
+                variant.has_coordinates(&counts, head)
+                    && (!whole || variant.size(&counts) == head.len() as u128)
+            })
         })
-    })
 }
 
 /// The variant that the file's name tells.

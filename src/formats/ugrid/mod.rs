@@ -117,6 +117,11 @@ fn outline_text(input: &Input, out: &mut dyn Outline) -> Result<()> {
         outline_elements(&mut reader, Table { what: &what, rows, extra: 0, first }, kind, out)?;
         first = first.saturating_add(rows);
     }
+    // A number that is cut short is still a number: something must follow the last.
+    let len = input.source.len();
+    if input.source.peek(len - 1..len).iter().any(u8::is_ascii_digit) {
+        return Err(input.source.malformed_text(len, "the end of the last row's line"));
+    }
     if reader.more() {
         return Err(input
             .source

@@ -42,7 +42,7 @@ impl Format for Ply {
         let source = &input.source;
         let header = Header::read(input)?;
         if header.faces().is_none_or(|table| table.count == 0) {
-            return Err(faces::none().in_file(source.path()));
+            return Err(faces::none(source, 0));
         }
         let mut at = header.end;
         for table in &header.tables {
