@@ -6,6 +6,7 @@
 
 mod abaqus;
 mod ansys;
+mod axes;
 mod batch;
 pub mod binary;
 pub mod columns;

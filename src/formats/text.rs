@@ -80,6 +80,21 @@ pub fn integer(token: &[u8]) -> Option<u64> {
     Some(value)
 }
 
+/// The digits that begin at place `at`, which moves behind them; `None` where there are none, or more than a `u64` is
+/// sure to hold.
+#[inline(always)]
+pub fn digits(bytes: &[u8], at: &mut usize) -> Option<u64> {
+    let start = *at;
+    let mut value = 0u64;
+    while let Some(digit) = bytes.get(*at).map(|b| b.wrapping_sub(b'0'))
+        && digit < 10
+    {
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit));
+        *at += 1;
+    }
+    matches!(*at - start, 1..=19).then_some(value)
+}
+
 /// A whole token as a number with a sign.
 #[inline]
 pub fn signed(token: &[u8]) -> Option<i64> {

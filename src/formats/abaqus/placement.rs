@@ -1,5 +1,7 @@
 //! Where nodes come to stand: coordinate systems of `*NODE`, the local frame of `*SYSTEM`, the motion of `*INSTANCE`.
 
+use crate::formats::axes::{cross, minus, sin_cos, unit};
+
 /// The coordinate system of a `*NODE` block. Angles are in degrees.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum System {
@@ -36,17 +38,6 @@ impl System {
                 [p[0] * out * cos, p[0] * out * sin, p[0] * up]
             }
         }
-    }
-}
-
-/// Sine and cosine of an angle in degrees; exact for quarter turns.
-fn sin_cos(degrees: f64) -> (f64, f64) {
-    match degrees.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => angle.to_radians().sin_cos(),
     }
 }
 
@@ -129,19 +120,6 @@ impl Placement {
     pub(super) fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         self.motion.apply(self.frame.apply(self.system.rectangular(p)))
     }
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let length = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
-    (length > 0.0 && length.is_finite()).then(|| a.map(|v| v / length))
 }
 
 #[cfg(test)]

@@ -55,18 +55,8 @@ impl<'t> Rows<'t> {
     pub(super) fn integer(&mut self, what: &str) -> Result<u64> {
         self.skip_blanks();
         let start = self.at;
-        let mut value = 0u64;
-        while let Some(digit) = self.bytes.get(self.at).map(|b| b.wrapping_sub(b'0'))
-            && digit < 10
-        {
-            value = value.wrapping_mul(10).wrapping_add(u64::from(digit));
-            self.at += 1;
-        }
-        let digits = self.at - start;
-        if digits == 0 || digits > 19 || !self.ends_here() {
-            return Err(self.unlike(start, what));
-        }
-        Ok(value)
+        let value = text::digits(self.bytes, &mut self.at);
+        value.filter(|_| self.ends_here()).ok_or_else(|| self.unlike(start, what))
     }
 
     /// The next number of the row, of either sign.

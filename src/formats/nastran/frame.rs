@@ -1,5 +1,7 @@
 //! A coordinate system: rectangular, cylindrical or spherical, somewhere in the basic one. Angles are in degrees.
 
+use crate::formats::axes::{cross, minus, sin_cos, unit};
+
 /// How the three coordinates of a system are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Axes {
@@ -27,17 +29,6 @@ impl Axes {
     }
 }
 
-/// Sine and cosine of an angle in degrees; exact for quarter turns.
-fn sin_cos(degrees: f64) -> (f64, f64) {
-    match degrees.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => angle.to_radians().sin_cos(),
-    }
-}
-
 /// A coordinate system in terms of the basic one.
 #[derive(Debug)]
 pub(super) struct Frame {
@@ -62,19 +53,6 @@ impl Frame {
         let [x, y, z] = &self.units;
         [0, 1, 2].map(|k| self.origin[k] + p[0] * x[k] + p[1] * y[k] + p[2] * z[k])
     }
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let length = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
-    (length > 0.0 && length.is_finite()).then(|| a.map(|v| v / length))
 }
 
 #[cfg(test)]
