@@ -98,9 +98,14 @@ impl Site {
         self.events(event).into_iter().filter(|line| line["mesh"] == mesh).collect()
     }
 
-    /// A summary.
+    /// A summary. It is published just after its line in the log: a test that has seen the line may be sooner.
     pub fn summary(&self, name: &str) -> Value {
-        let file = File::open(self.path("results").join(name)).expect("the summary is there");
+        let path = self.path("results").join(name);
+        let start = Instant::now();
+        while !path.exists() && start.elapsed() < PATIENCE {
+            sleep(Duration::from_millis(10));
+        }
+        let file = File::open(path).expect("the summary is there");
         serde_json::from_reader(BufReader::new(file)).expect("the summary is JSON")
     }
 
