@@ -14,7 +14,7 @@ use crate::measures::{self, Family};
 use crate::mesh::{Class, Nodes, Shape};
 use crate::statistics::{Moments, Spread};
 use crate::summary::{
-    Bounds, Checks, Elements, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
+    Bounds, Checks, Elements, Judgement, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
     ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict, rules,
 };
 
@@ -36,7 +36,7 @@ pub(super) struct Found<'a> {
 /// Puts the summary together and judges it.
 pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
     let reversed = reversed_shapes(found.format, &found.merged.shapes);
-    let shapes = shapes(&found, &reversed);
+    let shapes = shapes(&found, &reversed, &options.judgement);
     let mut summary = Summary {
         schema: Cow::Borrowed(SCHEMA),
         mesh: mesh_file(&found),
@@ -94,14 +94,14 @@ fn elements(ledger: &Ledger) -> Elements {
     elements
 }
 
-fn shapes(found: &Found<'_>, reversed: &Reversed) -> BTreeMap<Shape, ShapeSummary> {
+fn shapes(found: &Found<'_>, reversed: &Reversed, judgement: &Judgement) -> BTreeMap<Shape, ShapeSummary> {
     let mut shapes = BTreeMap::new();
     for shape in Shape::ALL {
         if let (Some(statistics), Some(bins)) = (&found.merged.shapes[shape.index()], found.bins.shape(shape))
         {
             let order = order(&found.merged.ledger, shape);
             let inverted = inverted(statistics, reversed[shape.index()]).count;
-            shapes.insert(shape, shape_summary(shape, statistics, bins, order, inverted));
+            shapes.insert(shape, shape_summary(shape, statistics, bins, order, inverted, judgement));
         }
     }
     shapes
@@ -113,6 +113,7 @@ fn shape_summary(
     bins: &ShapeBins,
     order: BTreeMap<String, u64>,
     inverted: u64,
+    judgement: &Judgement,
 ) -> ShapeSummary {
     let is_solid = shape.dimension() == 3;
     let mut found = ShapeSummary {
@@ -130,7 +131,8 @@ fn shape_summary(
         let moments = &statistics.subjects[subject];
         let rows = what.family.measures();
         for (i, row) in rows.iter().enumerate() {
-            let summary = measure_summary(what.on, moments, i, &bins.measures[subject][i]);
+            let further = judgement.probabilities(row.code, shape);
+            let summary = measure_summary(what.on, moments, i, &bins.measures[subject][i], &further);
             found.measures.insert(row.code.to_owned(), summary);
             for (j, other) in rows.iter().enumerate().skip(i + 1) {
                 found.correlation.insert(format!("{} {}", row.code, other.code), moments.correlation(i, j));
@@ -149,6 +151,7 @@ fn measure_summary(
     moments: &Moments,
     value: usize,
     bins: &super::measure::MeasureBins,
+    further_quantiles: &[f64],
 ) -> MeasureSummary {
     let extremes = &moments.extremes[value];
     MeasureSummary {
@@ -159,8 +162,9 @@ fn measure_summary(
         min_element: extremes.min_label,
         mean: moments.mean[value].clamp(extremes.min, extremes.max),
         sd: moments.sd(value),
-        quantiles: bins.spread.quantiles(extremes.min, extremes.max),
+        quantiles: bins.spread.quantiles(further_quantiles, extremes.min, extremes.max),
         histogram: bins.histogram.counts().to_vec(),
+        below: bins.below.iter().map(|(limit, count)| (limit.to_string(), *count)).collect(),
     }
 }
 
@@ -225,7 +229,7 @@ fn sizes(found: &Found<'_>, dimension: usize) -> Sizes {
             min: extremes.min,
             max: extremes.max,
             mean: size.mean[0].clamp(extremes.min, extremes.max),
-            quantiles: spread.quantiles(extremes.min, extremes.max),
+            quantiles: spread.quantiles(&[], extremes.min, extremes.max),
         }),
     }
 }

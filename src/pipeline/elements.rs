@@ -9,9 +9,9 @@ use std::thread;
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, select};
 
-use super::Progress;
 use super::measure::{Bins, Workspace, measure};
 use super::merge::{Merged, Message, merge};
+use super::{Options, Progress};
 use crate::error::Result;
 use crate::formats::{Chunks, ElementLayout, ElementSink, Piece};
 use crate::mesh::{Chunk, Nodes, Shape};
@@ -21,7 +21,7 @@ struct Shared<'a> {
     pieces: &'a [Piece<dyn ElementLayout>],
     nodes: &'a Nodes,
     next: AtomicU64,
-    allow_missing: bool,
+    options: &'a Options,
     progress: &'a Progress,
 }
 
@@ -48,7 +48,7 @@ pub(super) fn measure_elements(
     pieces: &[Piece<dyn ElementLayout>],
     nodes: &Nodes,
     threads: usize,
-    allow_missing: bool,
+    options: &Options,
     progress: &Progress,
 ) -> Result<(Merged, Bins)> {
     let window = 4 * threads + 2;
@@ -62,7 +62,7 @@ pub(super) fn measure_elements(
     for _ in 0..chunks_in_flight(threads) {
         empty_out.send(Chunk::new()).expect("the channel has room for every chunk");
     }
-    let shared = Shared { pieces, nodes, next: AtomicU64::new(0), allow_missing, progress };
+    let shared = Shared { pieces, nodes, next: AtomicU64::new(0), options, progress };
     let ends = Ends { tickets, full_in, full_out, empty_in, empty_out, results };
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)
@@ -73,7 +73,7 @@ pub(super) fn measure_elements(
             .collect();
         drop(ends);
         let merged = merge(&results_in, ticket_out);
-        let mut bins = Bins::new(nodes.bounds().diagonal());
+        let mut bins = Bins::new(nodes.bounds().diagonal(), &options.judgement);
         for worker in workers {
             match worker.join() {
                 Ok(theirs) => bins.merge(theirs),
@@ -93,7 +93,7 @@ struct Worker<'a> {
 
 impl<'a> Worker<'a> {
     fn new(shared: &'a Shared<'a>, ends: Ends) -> Self {
-        let bins = Bins::new(shared.nodes.bounds().diagonal());
+        let bins = Bins::new(shared.nodes.bounds().diagonal(), &shared.options.judgement);
         Self { shared, ends, work: Workspace::new(), bins }
     }
 
@@ -126,7 +126,7 @@ impl<'a> Worker<'a> {
         let number = self.shared.next.fetch_add(1, Ordering::Relaxed);
         let Some(piece) = self.shared.pieces.get(number as usize) else { return false };
         let (shared, results) = (self.shared, self.ends.results.clone());
-        let mut sink = ElementSink::new(shared.nodes, self, number, shared.allow_missing);
+        let mut sink = ElementSink::new(shared.nodes, self, number, shared.options.allow_missing_nodes);
         let done = piece.layout.decode(piece.span.clone(), &mut sink);
         let at = sink.at;
         let done = done.and_then(|()| sink.finish()).map_err(|error| piece.layout.source().place(error, at));

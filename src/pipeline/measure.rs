@@ -8,6 +8,7 @@ use crate::measures::{
 };
 use crate::mesh::{CHUNK, Chunk, Nodes, Origin, Shape};
 use crate::statistics::{Histogram, MOST, Moments, Spread, sum};
+use crate::summary::Judgement;
 
 /// The most subjects of a shape: triangular and quadrilateral faces.
 pub(super) const SUBJECTS: usize = 2;
@@ -86,6 +87,8 @@ pub(super) struct Bins {
     shapes: [Option<Box<ShapeBins>>; Shape::ALL.len()],
     /// No edge is longer.
     diagonal: f64,
+    /// Says which thresholds are counted.
+    judgement: Judgement,
 }
 
 /// Bins of one shape.
@@ -102,12 +105,14 @@ pub(super) struct ShapeBins {
 pub(super) struct MeasureBins {
     pub histogram: Histogram,
     pub spread: Spread,
+    /// Number of values under a threshold, by threshold.
+    pub below: Vec<(f64, u64)>,
 }
 
 impl Bins {
     /// Empty bins for a mesh whose bounds have the given diagonal.
-    pub(super) fn new(diagonal: f64) -> Self {
-        Self { shapes: [const { None }; Shape::ALL.len()], diagonal }
+    pub(super) fn new(diagonal: f64, judgement: &Judgement) -> Self {
+        Self { shapes: [const { None }; Shape::ALL.len()], diagonal, judgement: judgement.clone() }
     }
 
     /// The bins of a shape, if it was met.
@@ -118,8 +123,17 @@ impl Bins {
     fn shape_mut(&mut self, shape: Shape) -> &mut ShapeBins {
         self.shapes[shape.index()].get_or_insert_with(|| {
             let of = |subject: &Subject| {
-                let bins = || MeasureBins { histogram: Histogram::default(), spread: Spread::of_unit() };
-                subject.family.measures().iter().map(|_| bins()).collect()
+                let bins = |code| MeasureBins {
+                    histogram: Histogram::default(),
+                    spread: Spread::of_unit(),
+                    below: self
+                        .judgement
+                        .thresholds(code, shape)
+                        .into_iter()
+                        .map(|limit| (limit, 0))
+                        .collect(),
+                };
+                subject.family.measures().iter().map(|measure| bins(measure.code)).collect()
             };
             let measures = measures::subjects(shape).iter().map(of).collect();
             Box::new(ShapeBins { measures, size: Spread::up_to(self.diagonal) })
@@ -142,6 +156,7 @@ impl ShapeBins {
         for (mine, theirs) in self.measures.iter_mut().flatten().zip(other.measures.iter().flatten()) {
             mine.histogram.merge(&theirs.histogram);
             mine.spread.merge(&theirs.spread);
+            mine.below.iter_mut().zip(&theirs.below).for_each(|(mine, theirs)| mine.1 += theirs.1);
         }
         self.size.merge(&other.size);
     }
@@ -306,6 +321,9 @@ fn record(scores: &[Lanes], n: usize, first: u64, bins: &mut [MeasureBins], mome
         for score in *column {
             bins.histogram.record(*score);
             bins.spread.record(*score);
+        }
+        for (limit, count) in &mut bins.below {
+            *count += column.iter().filter(|score| **score < *limit).count() as u64;
         }
     }
     moments.merge(&Moments::of(&columns[..bins.len()], first));

@@ -66,8 +66,7 @@ fn measure(
     let builder = NodesBuilder::new(&budget, &input.scratch);
     let nodes = read_nodes(&plan.nodes, threads, builder, progress)?;
     tracing::debug!(nodes = nodes.count(), spilled = nodes.is_spilled(), "nodes read");
-    let (mut merged, bins) =
-        measure_elements(&plan.elements, &nodes, threads, options.allow_missing_nodes, progress)?;
+    let (mut merged, bins) = measure_elements(&plan.elements, &nodes, threads, options, progress)?;
     merged.ledger.merge(&plan.ledger);
     Ok((nodes, merged, bins))
 }

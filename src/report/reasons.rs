@@ -1,10 +1,10 @@
 //! The verdict's reasons in plain words.
 
 use super::layout::{ON_ELEMENT, plural};
-use super::numbers::{below, counted, percent, significant};
+use super::numbers::{self, below, count, counted, percent, significant};
 use super::safe::escaped;
 use crate::mesh::Shape;
-use crate::summary::{Reason, Summary, rules};
+use crate::summary::{Reason, Statistic, Summary, rules};
 
 /// A reason in plain words. A rule that is not known here (of a newer summary) is told by its name and numbers.
 pub fn in_words(reason: &Reason, summary: &Summary) -> String {
@@ -30,8 +30,46 @@ pub fn in_words(reason: &Reason, summary: &Summary) -> String {
         }
         (rules::EXPECTED_VOLUME, _) => off("volume", reason),
         (rules::EXPECTED_AREA, _) => off("area", reason),
-        _ => unknown(reason),
+        _ => of_rule(reason, summary).unwrap_or_else(|| unknown(reason)),
     }
+}
+
+/// A reason that a rule of a preset or of the user's own gave, by its statistic.
+fn of_rule(reason: &Reason, summary: &Summary) -> Option<String> {
+    reason.status?;
+    let rule = escaped(&reason.rule);
+    let limit = significant(reason.limit, 4);
+    let Some(statistic) = reason.statistic.as_deref() else {
+        return Some(format!("{} ({rule})", under(reason, summary, "")));
+    };
+    let of = reason.measure.as_deref().map(escaped)?;
+    if statistic == Statistic::Count.name() {
+        let found = count(reason.value as u64);
+        return Some(format!("{found} {}, over {limit} ({rule})", of.replace('_', " ")));
+    }
+    let (shape, first) = (plural(reason.shape?), reason.element?);
+    let below = |found: String, allowed: String| {
+        let threshold = reason.threshold.unwrap_or_default();
+        format!(
+            "{found} of {shape} with {of} under {threshold}, over {allowed} ({rule}); {first} is the worst"
+        )
+    };
+    Some(match statistic {
+        "share below" => below(percent_over(reason.value, reason.limit), percent(reason.limit)),
+        "count below" => below(count(reason.value as u64), limit),
+        _ => {
+            let value = numbers::below(reason.value, reason.limit);
+            format!("the {} of {of} over {shape} is {value}, under {limit} ({rule})", escaped(statistic))
+        }
+    })
+}
+
+/// A share as per cent, with as many digits as it takes to read as more than what is allowed.
+fn percent_over(share: f64, allowed: f64) -> String {
+    let reads_over =
+        |digits: &usize| significant(share * 100.0, *digits) != significant(allowed * 100.0, *digits);
+    let digits = (3..17).find(reads_over).unwrap_or(17);
+    format!("{} %", significant(share * 100.0, digits))
 }
 
 /// `M33 of tetrahedron 1937 is 0.040, under 0.1`.

@@ -65,8 +65,8 @@ impl Spread {
         }
     }
 
-    /// Quantiles by key, within [min, max], the true extremes.
-    pub fn quantiles(&self, min: f64, max: f64) -> BTreeMap<String, f64> {
+    /// Quantiles by key, within [min, max], the true extremes: those of [`QUANTILES`] and of further probabilities.
+    pub fn quantiles(&self, further: &[f64], min: f64, max: f64) -> BTreeMap<String, f64> {
         let mut histogram = hdrhistogram::Histogram::<u64>::new_with_bounds(1, 2 * TOP_TICKS, 3)
             .expect("the bounds are in order and three digits are allowed");
         for (cell, &count) in self.cells.iter().enumerate().filter(|(_, count)| **count > 0) {
@@ -77,7 +77,9 @@ impl Spread {
             let ticks = histogram.median_equivalent(histogram.value_at_quantile(probability));
             (ticks as f64 / TOP_TICKS as f64 * self.top).clamp(min, max)
         };
-        QUANTILES.iter().map(|(key, probability)| ((*key).to_owned(), read(*probability))).collect()
+        let always = QUANTILES.iter().map(|(key, probability)| ((*key).to_owned(), *probability));
+        let asked = further.iter().map(|probability| (probability.to_string(), *probability));
+        always.chain(asked).map(|(key, probability)| (key, read(probability))).collect()
     }
 
     /// Smallest value of a cell.
@@ -97,7 +99,7 @@ mod tests {
             let mut spread = if scale == 1.0 { Spread::of_unit() } else { Spread::up_to(scale) };
             values.iter().for_each(|&v| spread.record(v));
             values.sort_by(f64::total_cmp);
-            let found = spread.quantiles(values[0], values[values.len() - 1]);
+            let found = spread.quantiles(&[], values[0], values[values.len() - 1]);
             for (key, probability) in QUANTILES {
                 let true_value = values[(probability * 1e5) as usize - 1];
                 assert!((found[key] / true_value - 1.0).abs() < 1.5e-3, "{key}: {} {true_value}", found[key]);
@@ -109,10 +111,10 @@ mod tests {
     fn zero_and_one_are_themselves() {
         let mut spread = Spread::of_unit();
         spread.record(0.0);
-        assert_eq!(spread.quantiles(0.0, 0.0)["0.5"], 0.0);
+        assert_eq!(spread.quantiles(&[], 0.0, 0.0)["0.5"], 0.0);
         let mut spread = Spread::of_unit();
         spread.record(1.0);
-        assert_eq!(spread.quantiles(1.0, 1.0)["0.5"], 1.0);
+        assert_eq!(spread.quantiles(&[], 1.0, 1.0)["0.5"], 1.0);
     }
 
     #[test]
@@ -121,7 +123,7 @@ mod tests {
             let mut spread = Spread::up_to(largest);
             spread.record(0.0);
             spread.record(largest);
-            assert!(spread.quantiles(0.0, largest)["0.95"] <= largest);
+            assert!(spread.quantiles(&[], 0.0, largest)["0.95"] <= largest);
         }
     }
 }

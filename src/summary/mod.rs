@@ -4,6 +4,8 @@
 //! written in the shortest form that reads back to the same double. The same input gives the same bytes whatever the
 //! threads and the memory budget; `run` alone differs.
 
+mod checks;
+mod rule;
 mod verdict;
 
 use std::borrow::Cow;
@@ -13,7 +15,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::mesh::Shape;
 
-pub use verdict::{Expectation, FailUnder, Judgement, rules};
+pub use checks::Checks;
+pub use rule::{GOOD, INVESTIGATE, PRESETS, Preset, Rule, STATISTICS, Statistic, Subject, preset};
+pub use verdict::{Expectation, Judgement, rules};
 
 /// The schema's name and version.
 pub const SCHEMA: &str = "meshgauge.summary/1";
@@ -141,6 +145,9 @@ pub struct MeasureSummary {
     pub quantiles: BTreeMap<String, f64>,
     /// Bin k of 100 counts the values with `0.01 k <= M < 0.01 (k + 1)`; 1 is in the last.
     pub histogram: Vec<u64>,
+    /// Number of values under a threshold, by threshold: those that a rule of the verdict asks for.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub below: BTreeMap<String, u64>,
 }
 
 /// Sums over the elements of the mesh's own dimension: solids if there are any, else surfaces.
@@ -181,27 +188,6 @@ pub struct SizeSummary {
     pub mean: f64,
     /// Quantiles by probability.
     pub quantiles: BTreeMap<String, f64>,
-}
-
-/// Number of findings of each check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Checks {
-    /// Elements that name nodes which the file does not define; they were left out.
-    pub missing_nodes: u64,
-    /// Elements that name one corner twice.
-    pub repeated_nodes: u64,
-    /// Nodes that no element names.
-    pub unused_nodes: u64,
-    /// Elements that are oriented against the majority of their shape.
-    pub inverted: u64,
-    /// Elements without area or volume, or with an edge without length.
-    pub degenerate: u64,
-    /// Elements of shapes whose majority is oriented negatively: a convention of the writer, not a fault.
-    pub reversed: u64,
-    /// Quadrilateral faces with a re-entrant corner.
-    pub concave_faces: u64,
-    /// Quadrilateral faces two of whose sides cross.
-    pub crossed_faces: u64,
 }
 
 /// What the user said the mesh should measure.
@@ -245,7 +231,7 @@ pub enum Status {
 pub struct Reason {
     /// The rule's name: `npl`, `fail under`, `inverted elements`, ...
     pub rule: Cow<'static, str>,
-    /// The measure, where the rule is about one.
+    /// The measure or the check, where the rule is about one.
     pub measure: Option<String>,
     /// The shape, where the rule is about one.
     pub shape: Option<Shape>,
@@ -255,6 +241,16 @@ pub struct Reason {
     pub limit: f64,
     /// The element to look at first, where there is one.
     pub element: Option<u64>,
+    /// What of the measure was held against the limit, where it is not the minimum: `mean`, `quantile 0.05`,
+    /// `share below`, `count below`, ...
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub statistic: Option<Cow<'static, str>>,
+    /// What the values are under that `share below` and `count below` count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+    /// How bad it is, where the rule's name alone does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub status: Option<Status>,
 }
 
 /// How the run went.
@@ -288,11 +284,26 @@ impl Status {
 }
 
 impl Reason {
-    /// How bad it is: the rule tells.
+    /// How bad it is.
     pub fn status(&self) -> Status {
-        match &*self.rule {
+        self.status.unwrap_or(match &*self.rule {
             rules::NPL | rules::NOTHING_MEASURED => Status::Warn,
             _ => Status::Fail,
+        })
+    }
+
+    /// A reason that names its rule and nothing else yet.
+    fn of(rule: impl Into<Cow<'static, str>>) -> Self {
+        Self {
+            rule: rule.into(),
+            measure: None,
+            shape: None,
+            value: 0.0,
+            limit: 0.0,
+            element: None,
+            statistic: None,
+            threshold: None,
+            status: None,
         }
     }
 }

@@ -1,11 +1,10 @@
-//! The verdict: the preset `npl`, what the user asked for on the command line, and the true area or volume.
+//! The verdict: the user's own rules, those of presets, and the true area or volume.
 //!
 //! Boundary shapes (of a lower dimension than the mesh) have no say. Reasons stand in this order: failures before
-//! warnings; the expected area or volume first, then shape by shape, measure by measure.
+//! warnings; the expected area or volume first, then shape by shape, measure by measure, then checks.
 
-use std::borrow::Cow;
-
-use super::{Expected, MeasureSummary, Reason, Status, Summary, Verdict};
+use super::rule::{PRESETS, Rule, Statistic, Subject, preset};
+use super::{Checks, Expected, MeasureSummary, Reason, Status, Summary, Verdict};
 use crate::mesh::Shape;
 
 /// Names of the rules, as they stand in a summary.
@@ -24,27 +23,31 @@ pub mod rules {
     pub const EXPECTED_VOLUME: &str = "expected volume";
     /// Fails where the area is not what the user expects.
     pub const EXPECTED_AREA: &str = "expected area";
+
+    /// Whether the rule's name alone tells how bad it is to break it.
+    pub(super) fn has_own_status(name: &str) -> bool {
+        matches!(
+            name,
+            NPL | FAIL_UNDER | INVERTED | DEGENERATE | NOTHING_MEASURED | EXPECTED_VOLUME | EXPECTED_AREA
+        )
+    }
 }
 
-/// The report: under this a measure is 'bad enough to warrant further investigation'.
-const INVESTIGATE: f64 = 0.1;
-
 /// What a mesh is judged by.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
-    /// Limits of the user's own; each takes the place of the preset's limit for its measure.
-    pub fail_under: Vec<FailUnder>,
+    /// Rules of the user's own; those of presets do not hold for a measure of a shape that one of these is about.
+    pub rules: Vec<Rule>,
+    /// Names of the presets that hold, out of [`PRESETS`].
+    pub presets: Vec<&'static str>,
     /// The true area or volume.
     pub expectation: Option<Expectation>,
 }
 
-/// Fail where the minimum of a measure is under a value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FailUnder {
-    /// The measure's code: `M31`.
-    pub measure: String,
-    /// The limit.
-    pub value: f64,
+impl Default for Judgement {
+    fn default() -> Self {
+        Self { rules: Vec::new(), presets: vec![PRESETS[0].name], expectation: None }
+    }
 }
 
 /// The true area or volume of the domain, and how far off the mesh may be.
@@ -78,36 +81,108 @@ impl Judgement {
                 }
             }
             for (code, measure) in &found.measures {
-                reasons.extend(self.limits(code, measure, shape));
+                let broken =
+                    self.rules_about(code, shape).into_iter().filter(|rule| is_broken(rule, measure));
+                reasons.extend(worst_of(broken.collect()).map(|rule| reason(rule, code, shape, measure)));
             }
         }
+        reasons.extend(self.rules.iter().filter_map(|rule| check(rule, &summary.checks)));
         reasons.sort_by_key(|reason| std::cmp::Reverse(reason.status()));
         let status = reasons.first().map_or(Status::Pass, Reason::status);
         summary.verdict = Verdict { status, reasons };
     }
 
-    /// The limits that a measure is under: the user's own where there are any, else the preset's.
-    fn limits(&self, code: &str, measure: &MeasureSummary, shape: Shape) -> Vec<Reason> {
-        let mut limits: Vec<_> = self
-            .fail_under
-            .iter()
-            .filter(|limit| limit.measure == code)
-            .map(|limit| (rules::FAIL_UNDER, limit.value))
-            .collect();
-        if limits.is_empty() {
-            limits.push((rules::NPL, INVESTIGATE));
+    /// The rules that a measure is under: the user's own where there are any, else the presets'.
+    fn rules_about(&self, code: &str, shape: Shape) -> Vec<&Rule> {
+        let own: Vec<_> = self.rules.iter().filter(|rule| rule.is_about(code, shape)).collect();
+        if !own.is_empty() {
+            return own;
         }
-        limits.retain(|(_, limit)| measure.min < *limit);
-        let reason = |(rule, limit)| Reason {
-            rule: Cow::Borrowed(rule),
-            measure: Some(code.to_owned()),
-            shape: Some(shape),
-            value: measure.min,
-            limit,
-            element: Some(measure.min_element),
-        };
-        limits.into_iter().map(reason).collect()
+        let presets = self.presets.iter().filter_map(|name| preset(name));
+        presets.flat_map(|preset| preset.rules).filter(|rule| rule.is_about(code, shape)).collect()
     }
+
+    /// The values of a measure that the number of smaller ones is asked for, in ascending order.
+    pub fn thresholds(&self, code: &str, shape: Shape) -> Vec<f64> {
+        let counted =
+            |rule: &&Rule| matches!(rule.statistic, Statistic::ShareBelow(_) | Statistic::CountBelow(_));
+        let mut limits: Vec<_> =
+            self.rules_about(code, shape).into_iter().filter(counted).map(|rule| rule.limit).collect();
+        limits.sort_by(f64::total_cmp);
+        limits.dedup();
+        limits
+    }
+
+    /// The probabilities that a measure's quantiles are asked for, besides those that every summary has.
+    pub fn probabilities(&self, code: &str, shape: Shape) -> Vec<f64> {
+        let rules = self.rules_about(code, shape).into_iter();
+        rules
+            .filter_map(|rule| if let Statistic::Quantile(p) = rule.statistic { Some(p) } else { None })
+            .collect()
+    }
+}
+
+/// What a measure has to show for a rule: the value and what it may be; nothing where the summary does not know.
+fn shown(rule: &Rule, measure: &MeasureSummary) -> Option<(f64, f64)> {
+    let below = || measure.below.get(&rule.limit.to_string()).map(|count| *count as f64);
+    match rule.statistic {
+        Statistic::Min => Some((measure.min, rule.limit)),
+        Statistic::Max => Some((measure.max, rule.limit)),
+        Statistic::Mean => Some((measure.mean, rule.limit)),
+        Statistic::Quantile(p) => measure.quantiles.get(&p.to_string()).map(|value| (*value, rule.limit)),
+        Statistic::ShareBelow(allowed) => below().map(|count| (count / measure.count as f64, allowed)),
+        Statistic::CountBelow(allowed) => below().map(|count| (count, allowed as f64)),
+        Statistic::Count => None,
+    }
+}
+
+fn is_broken(rule: &Rule, measure: &MeasureSummary) -> bool {
+    shown(rule, measure).is_some_and(|(value, limit)| match rule.statistic {
+        Statistic::ShareBelow(_) | Statistic::CountBelow(_) => value > limit,
+        _ => value < limit,
+    })
+}
+
+/// One value, one reason: a warning is not told beside a failure for the same statistic.
+fn worst_of(broken: Vec<&Rule>) -> impl Iterator<Item = &Rule> {
+    let fails = |statistic: Statistic| {
+        let same =
+            |rule: &&Rule| std::mem::discriminant(&rule.statistic) == std::mem::discriminant(&statistic);
+        broken.iter().filter(|rule| same(rule)).any(|rule| rule.status == Status::Fail)
+    };
+    let told: Vec<_> =
+        broken.iter().copied().filter(|rule| rule.status == Status::Fail || !fails(rule.statistic)).collect();
+    told.into_iter()
+}
+
+fn reason(rule: &Rule, code: &str, shape: Shape, measure: &MeasureSummary) -> Reason {
+    let (value, limit) = shown(rule, measure).unwrap_or_default();
+    let counted = matches!(rule.statistic, Statistic::ShareBelow(_) | Statistic::CountBelow(_));
+    Reason {
+        measure: Some(code.to_owned()),
+        shape: Some(shape),
+        value,
+        limit,
+        element: Some(measure.min_element),
+        statistic: rule.statistic.described(),
+        threshold: counted.then_some(rule.limit),
+        status: (!rules::has_own_status(&rule.name)).then_some(rule.status),
+        ..Reason::of(rule.name.clone())
+    }
+}
+
+/// The reason why a rule about a check is broken, if it is.
+fn check(rule: &Rule, checks: &Checks) -> Option<Reason> {
+    let Subject::Check(name) = &rule.subject else { return None };
+    let count = checks.get(name)?;
+    (count as f64 > rule.limit).then(|| Reason {
+        measure: Some(name.to_string()),
+        value: count as f64,
+        limit: rule.limit,
+        statistic: rule.statistic.described(),
+        status: Some(rule.status),
+        ..Reason::of(rule.name.clone())
+    })
 }
 
 impl Expectation {
@@ -126,12 +201,9 @@ impl Expectation {
 
     fn missed(&self, relative_error: f64) -> Reason {
         Reason {
-            rule: Cow::Borrowed(if self.volume { rules::EXPECTED_VOLUME } else { rules::EXPECTED_AREA }),
-            measure: None,
-            shape: None,
             value: relative_error,
             limit: self.tolerance_percent / 100.0,
-            element: None,
+            ..Reason::of(if self.volume { rules::EXPECTED_VOLUME } else { rules::EXPECTED_AREA })
         }
     }
 }
@@ -143,25 +215,11 @@ fn relative_error(found: f64, truth: f64) -> f64 {
 }
 
 fn nothing_measured() -> Reason {
-    Reason {
-        rule: Cow::Borrowed(rules::NOTHING_MEASURED),
-        measure: None,
-        shape: None,
-        value: 0.0,
-        limit: 1.0,
-        element: None,
-    }
+    Reason { limit: 1.0, ..Reason::of(rules::NOTHING_MEASURED) }
 }
 
 fn counted(rule: &'static str, shape: Shape, count: u64) -> Reason {
-    Reason {
-        rule: Cow::Borrowed(rule),
-        measure: None,
-        shape: Some(shape),
-        value: count as f64,
-        limit: 0.0,
-        element: None,
-    }
+    Reason { shape: Some(shape), value: count as f64, ..Reason::of(rule) }
 }
 
 #[cfg(test)]

@@ -12,7 +12,8 @@ fn measure(on: &'static str, count: u64, row: (f64, f64, u64, f64, f64)) -> Meas
     histogram[((mean * 100.0) as usize).min(99)] = count;
     let quantiles = [("0.001", min + 0.01), ("0.01", 0.4), ("0.05", 0.55), ("0.5", mean), ("0.95", max)];
     let quantiles = quantiles.into_iter().map(|(p, q)| (p.to_owned(), q)).collect();
-    MeasureSummary { on: on.into(), count, max, min, min_element, mean, sd, quantiles, histogram }
+    let below = BTreeMap::new();
+    MeasureSummary { on: on.into(), count, max, min, min_element, mean, sd, quantiles, histogram, below }
 }
 
 fn named<T>(rows: impl IntoIterator<Item = (&'static str, T)>) -> BTreeMap<String, T> {
@@ -116,7 +117,7 @@ pub fn mixed() -> Summary {
         elements_per_second: 145_867.1,
     });
     let expectation = Some(Expectation { volume: true, value: 9_817.477_042_468_1, tolerance_percent: 0.5 });
-    let fail_under = vec![FailUnder { measure: "M11".to_owned(), value: 0.4 }];
-    Judgement { fail_under, expectation }.judge(&mut summary);
+    let rules = vec![Rule::fail_under("M11", 0.4)];
+    Judgement { rules, expectation, ..Judgement::default() }.judge(&mut summary);
     summary
 }

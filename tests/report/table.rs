@@ -64,7 +64,7 @@ fn reasons_in_plain_words() {
 fn an_expectation_of_the_wrong_kind_is_told() {
     let mut summary = tetrahedra();
     let expectation = Some(Expectation { volume: false, value: 78.5, tolerance_percent: 0.5 });
-    Judgement { fail_under: vec![], expectation }.judge(&mut summary);
+    Judgement { expectation, ..Judgement::default() }.judge(&mut summary);
     let found = plain("table", &[summary]);
     assert!(found.contains("  area          none; expected 78.5\n"), "{found}");
     assert!(found.contains("an area is expected, but the mesh is made of solids\n"), "{found}");

@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use anyhow::Context;
 use meshgauge::Options;
-use meshgauge::summary::{FailUnder, Judgement};
+use meshgauge::summary::{Judgement, PRESETS, Rule};
 use serde::{Deserialize, Serialize};
 
 use crate::config_file;
 use crate::exit::Usage;
 use crate::quantity::{Size, Span};
-use crate::selection;
+use crate::{rules, selection};
 
 /// Every setting. `config/meshgauge.toml` says what each means.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -47,11 +47,13 @@ pub struct Score {
 }
 
 /// `[verdict]`
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 #[allow(missing_docs)]
 pub struct Verdict {
+    pub preset: String,
     pub fail_under: BTreeMap<String, f64>,
+    pub rules: Vec<rules::Row>,
 }
 
 /// `[limits]`
@@ -132,6 +134,12 @@ impl Default for Score {
     }
 }
 
+impl Default for Verdict {
+    fn default() -> Self {
+        Self { preset: PRESETS[0].name.into(), fail_under: BTreeMap::new(), rules: Vec::new() }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         let limits = meshgauge::input::Limits::default();
@@ -207,9 +215,7 @@ impl Config {
     /// Says what makes no sense in settings that are well-formed each on its own.
     pub fn check(&self) -> Result<(), Usage> {
         selection::measures(&self.score.measures)?;
-        for measure in self.verdict.fail_under.keys() {
-            selection::known(measure)?;
-        }
+        self.verdict.judgement()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
         let wrong = [
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
@@ -260,17 +266,21 @@ impl Config {
                 include_depth: limits.include_depth,
                 include_count: limits.include_count,
             },
-            judgement: Judgement {
-                fail_under: self
-                    .verdict
-                    .fail_under
-                    .iter()
-                    .map(|(measure, &value)| FailUnder { measure: measure.clone(), value })
-                    .collect(),
-                ..Judgement::default()
-            },
+            judgement: self.verdict.judgement()?,
             run_info: score.run_info,
             progress: None,
         })
+    }
+}
+
+impl Verdict {
+    /// What a mesh is judged by.
+    fn judgement(&self) -> Result<Judgement, Usage> {
+        let mut own = Vec::new();
+        for (measure, &limit) in &self.fail_under {
+            own.push(Rule::fail_under(selection::known(measure)?, limit));
+        }
+        own.extend(rules::rules(&self.rules)?);
+        Ok(Judgement { rules: own, presets: rules::presets(&self.preset)?, expectation: None })
     }
 }

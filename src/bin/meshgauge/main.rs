@@ -14,6 +14,7 @@ mod path_text;
 mod progress;
 mod publish;
 mod quantity;
+mod rules;
 mod selection;
 
 use std::process::ExitCode;

@@ -106,8 +106,8 @@ fn rules_of(summary: &Summary) -> Vec<&str> {
 }
 
 fn asked(row: &Row) -> Judgement {
-    let limit = |(code, value): &(&str, f64)| FailUnder { measure: (*code).to_owned(), value: *value };
-    Judgement { fail_under: row.fail_under.iter().map(limit).collect(), expectation: None }
+    let rules = row.fail_under.iter().map(|(code, value)| Rule::fail_under(*code, *value)).collect();
+    Judgement { rules, ..Judgement::default() }
 }
 
 #[test]
@@ -132,6 +132,9 @@ fn a_reason_names_the_value_the_limit_and_the_element() {
         value: 0.04,
         limit: 0.1,
         element: Some(7),
+        statistic: None,
+        threshold: None,
+        status: None,
     };
     assert_eq!(found.verdict.reasons, [expected]);
 }
@@ -140,8 +143,8 @@ fn a_reason_names_the_value_the_limit_and_the_element() {
 fn boundary_shapes_have_no_say() {
     for row in ROWS {
         let mut found = summary(&[("triangle", row), ("hexahedron", &SOUND)]);
-        let fail_under = asked(row).fail_under.into_iter().filter(|f| f.value <= SOUND.min).collect();
-        Judgement { fail_under, expectation: None }.judge(&mut found);
+        let rules = asked(row).rules.into_iter().filter(|rule| rule.limit <= SOUND.min).collect();
+        Judgement { rules, ..Judgement::default() }.judge(&mut found);
         assert_eq!(found.verdict, Verdict { status: Status::Pass, reasons: vec![] }, "{}", row.what);
     }
 }
@@ -157,9 +160,13 @@ fn a_surface_mesh_is_judged_by_its_surface() {
 fn failures_stand_before_warnings_across_shapes() {
     let (weak, bad) = (Row { min: 0.05, ..SOUND }, Row { min: 0.0, degenerate: 1, ..SOUND });
     let mut found = summary(&[("tetrahedron", &weak), ("wedge", &bad)]);
-    Judgement { fail_under: vec![], expectation: Some(expect(true, 100.0)) }.judge(&mut found);
+    expecting(expect(true, 100.0)).judge(&mut found);
     assert_eq!(rules_of(&found), ["expected volume", "degenerate elements", "npl", "npl"]);
     assert_eq!(found.verdict.reasons[2].shape, Some(Shape::Tetrahedron));
+}
+
+fn expecting(expectation: Expectation) -> Judgement {
+    Judgement { expectation: Some(expectation), ..Judgement::default() }
 }
 
 fn expect(volume: bool, value: f64) -> Expectation {
@@ -181,7 +188,7 @@ fn expected_volumes_and_areas() {
     ];
     for (volume, value, relative_error, within) in rows {
         let mut found = summary(&[("tetrahedron", &SOUND)]);
-        Judgement { fail_under: vec![], expectation: Some(expect(volume, value)) }.judge(&mut found);
+        expecting(expect(volume, value)).judge(&mut found);
         let met = found.expected.expect("what was asked is answered");
         assert_eq!((met.relative_error, met.within), (relative_error, within), "{value}");
         assert_eq!((met.volume.is_some(), met.area.is_some()), (volume, !volume));
@@ -196,7 +203,7 @@ fn expected_volumes_and_areas() {
 #[test]
 fn judging_again_forgets_the_old_verdict() {
     let mut found = summary(&[("tetrahedron", &SOUND)]);
-    Judgement { fail_under: vec![], expectation: Some(expect(true, 1.0)) }.judge(&mut found);
+    expecting(expect(true, 1.0)).judge(&mut found);
     assert_eq!(found.verdict.status, Status::Fail);
     Judgement::default().judge(&mut found);
     assert_eq!((found.verdict.status, found.expected), (Status::Pass, None));
@@ -208,4 +215,107 @@ fn a_mesh_without_a_measured_element_is_no_pass() {
     Judgement::default().judge(&mut summary);
     assert_eq!(summary.verdict.status, Status::Warn);
     assert_eq!(summary.verdict.reasons[0].rule, rules::NOTHING_MEASURED);
+}
+
+/// A measure with a mean of 0.8, a maximum of 1, a minimum of 0.5, 3 of 1000 values under 0.6, a median of 0.79.
+fn measured() -> Summary {
+    let mut found = summary(&[("tetrahedron", &SOUND)]);
+    let shape = found.shapes.get_mut(&Shape::Tetrahedron).expect("there are some");
+    let measure = shape.measures.get_mut("M31").expect("it was measured");
+    measure.count = 1000;
+    measure.below = [("0.6".to_owned(), 3)].into();
+    measure.quantiles = [("0.5".to_owned(), 0.79)].into();
+    found.checks.unused_nodes = 12;
+    found
+}
+
+fn rule(statistic: Statistic, limit: f64) -> Rule {
+    Rule { name: "ours".into(), statistic, ..Rule::fail_under("M31", limit) }
+}
+
+#[test]
+fn each_statistic_is_broken_on_its_own_side_of_the_limit() {
+    // (statistic, limit, value and limit of the reason)
+    let rows = [
+        (Statistic::Min, 0.51, Some((0.5, 0.51))),
+        (Statistic::Min, 0.5, None),
+        (Statistic::Mean, 0.81, Some((0.8, 0.81))),
+        (Statistic::Mean, 0.8, None),
+        (Statistic::Max, 1.0, None),
+        (Statistic::Quantile(0.5), 0.8, Some((0.79, 0.8))),
+        (Statistic::Quantile(0.5), 0.79, None),
+        (Statistic::ShareBelow(0.002), 0.6, Some((0.003, 0.002))),
+        (Statistic::ShareBelow(0.003), 0.6, None),
+        (Statistic::ShareBelow(0.0), 0.6, Some((0.003, 0.0))),
+        (Statistic::CountBelow(2), 0.6, Some((3.0, 2.0))),
+        (Statistic::CountBelow(3), 0.6, None),
+    ];
+    for (statistic, limit, expected) in rows {
+        let mut found = measured();
+        Judgement { rules: vec![rule(statistic, limit)], ..Judgement::default() }.judge(&mut found);
+        let reason = found.verdict.reasons.first().map(|reason| (reason.value, reason.limit));
+        assert_eq!(reason, expected, "{statistic:?} {limit}");
+        assert_eq!(found.verdict.status == Status::Fail, expected.is_some(), "{statistic:?} {limit}");
+    }
+}
+
+#[test]
+fn a_rule_may_warn_be_of_one_shape_or_of_a_check() {
+    let own = |rule: Rule| Judgement { rules: vec![rule], presets: vec![], expectation: None };
+    let mut found = measured();
+    own(Rule { status: Status::Warn, ..rule(Statistic::Mean, 0.9) }).judge(&mut found);
+    assert_eq!((found.verdict.status, rules_of(&found)), (Status::Warn, vec!["ours"]));
+    own(Rule { shape: Some(Shape::Wedge), ..rule(Statistic::Mean, 0.9) }).judge(&mut found);
+    assert_eq!(found.verdict.status, Status::Pass);
+    let unused = Subject::Check("unused_nodes".into());
+    own(Rule { subject: unused.clone(), ..rule(Statistic::Count, 12.0) }).judge(&mut found);
+    assert_eq!(found.verdict.status, Status::Pass);
+    own(Rule { subject: unused, ..rule(Statistic::Count, 11.0) }).judge(&mut found);
+    assert_eq!((found.verdict.status, found.verdict.reasons[0].value), (Status::Fail, 12.0));
+}
+
+#[test]
+fn a_failure_and_a_warning_for_one_value_are_one_reason() {
+    let warn = |limit| Rule { status: Status::Warn, ..rule(Statistic::Min, limit) };
+    let mut found = measured();
+    let rules = vec![rule(Statistic::Min, 0.6), warn(0.9), rule(Statistic::Mean, 0.9)];
+    Judgement { rules, ..Judgement::default() }.judge(&mut found);
+    let limits: Vec<_> = found.verdict.reasons.iter().map(|reason| reason.limit).collect();
+    assert_eq!(limits, [0.6, 0.9], "the minimum fails once, the mean fails too");
+}
+
+#[test]
+fn presets() {
+    // (preset, measure, shape, its minimum, status)
+    let rows = [
+        ("npl", "M31", "tetrahedron", 0.09, Status::Warn),
+        ("comsol", "M31", "tetrahedron", 0.09, Status::Warn),
+        ("comsol", "M31", "tetrahedron", 0.1, Status::Pass),
+        ("comsol", "M33", "tetrahedron", 0.0, Status::Pass),
+        ("comsol", "M13", "triangle", 0.29, Status::Warn),
+        ("comsol", "M13", "wedge", 0.29, Status::Pass),
+        ("aspect", "M22", "quadrilateral", 0.19, Status::Warn),
+        ("aspect", "M22", "hexahedron", 0.069, Status::Fail),
+        ("aspect", "M22", "hexahedron", 0.2, Status::Pass),
+        ("none", "M22", "hexahedron", 0.0, Status::Pass),
+    ];
+    for (name, code, shape, min, status) in rows {
+        let mut found = summary(&[(shape, &Row { min, ..SOUND })]);
+        for measured in found.shapes.values_mut() {
+            measured.measures = measured.measures.values().map(|m| (code.to_owned(), m.clone())).collect();
+        }
+        let presets = vec![preset(name).expect("it is in the table").name];
+        Judgement { presets, ..Judgement::default() }.judge(&mut found);
+        assert_eq!(found.verdict.status, status, "{name} {code} {shape} {min}");
+        assert!(found.verdict.reasons.len() <= 1, "{name} {code} {shape} {min}");
+    }
+}
+
+#[test]
+fn a_rule_for_one_shape_leaves_the_preset_to_the_others() {
+    let weak = Row { min: 0.05, ..SOUND };
+    let mut found = summary(&[("tetrahedron", &weak), ("wedge", &weak)]);
+    let rules = vec![Rule { shape: Some(Shape::Wedge), ..Rule::fail_under("M31", 0.01) }];
+    Judgement { rules, ..Judgement::default() }.judge(&mut found);
+    assert_eq!((rules_of(&found), found.verdict.reasons[0].shape), (vec!["npl"], Some(Shape::Tetrahedron)));
 }

@@ -3,6 +3,7 @@
 use std::io::{Write, stdout};
 
 use meshgauge::measures::{Measure, measures};
+use meshgauge::summary::PRESETS;
 
 use crate::exit::Status;
 
@@ -22,6 +23,10 @@ pub fn run(_args: &Args) -> anyhow::Result<Status> {
             let (value, meaning, source) = (threshold.value, threshold.meaning, threshold.source);
             writeln!(out, "     threshold:  {value} ({meaning}; {source})")?;
         }
+    }
+    writeln!(out, "\nPresets of the verdict (--preset):")?;
+    for preset in PRESETS {
+        writeln!(out, "{:<7} {}\n        source: {}", preset.name, preset.title, preset.source)?;
     }
     Ok(Status::Fine)
 }

@@ -82,6 +82,12 @@ pub struct Args {
     #[arg(long, value_name = "MEASURE=VALUE", value_parser = limit)]
     fail_under: Vec<(String, f64)>,
 
+    /// What the mesh is judged by: npl, comsol, aspect or none, or several as in npl,aspect.
+    ///
+    /// `meshgauge measures` says what each holds. Rules of your own go into the configuration, [verdict].
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
+
     /// Count elements that name missing nodes, and leave them out, instead of refusing the file.
     #[arg(long)]
     allow_missing_nodes: bool,
@@ -128,6 +134,7 @@ impl Args {
         score.allow_missing_nodes |= self.allow_missing_nodes;
         score.run_info &= !self.no_run_info;
         config.verdict.fail_under.extend(self.fail_under.iter().cloned());
+        config.verdict.preset = self.preset.clone().unwrap_or_else(|| config.verdict.preset.clone());
         Ok(config)
     }
 

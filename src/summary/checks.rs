@@ -1,0 +1,46 @@
+//! The checks: what is counted of a mesh besides its measures.
+
+use serde::{Deserialize, Serialize};
+
+/// Makes the struct and the lookup by name from one list.
+macro_rules! checks {
+    ($($(#[$doc:meta])* $name:ident,)+) => {
+        /// Number of findings of each check.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+        pub struct Checks {
+            $($(#[$doc])* pub $name: u64,)+
+        }
+
+        impl Checks {
+            /// The names of the checks, as the summary has them.
+            pub const NAMES: &[&str] = &[$(stringify!($name)),+];
+
+            /// The number of findings of the check of that name.
+            pub fn get(&self, name: &str) -> Option<u64> {
+                match name {
+                    $(stringify!($name) => Some(self.$name),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+checks! {
+    /// Elements that name nodes which the file does not define; they were left out.
+    missing_nodes,
+    /// Elements that name one corner twice.
+    repeated_nodes,
+    /// Nodes that no element names.
+    unused_nodes,
+    /// Elements that are oriented against the majority of their shape.
+    inverted,
+    /// Elements without area or volume, or with an edge without length.
+    degenerate,
+    /// Elements of shapes whose majority is oriented negatively: a convention of the writer, not a fault.
+    reversed,
+    /// Quadrilateral faces with a re-entrant corner.
+    concave_faces,
+    /// Quadrilateral faces two of whose sides cross.
+    crossed_faces,
+}
