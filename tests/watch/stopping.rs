@@ -1,11 +1,12 @@
 //! A daemon that is stopped or killed loses nothing and does nothing twice.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixDatagram;
 use std::thread::sleep;
 use std::time::Duration;
 
+use rusqlite::Connection;
 use rustix::process::Signal;
 
 use crate::daemon::{BAD, MESH, ONE_WORKER, Site, one_worker, send};
@@ -78,15 +79,16 @@ fn a_daemon_that_is_killed_takes_up_its_work_again() {
 
 /// Puts the site into the state in which a crash after the log's line and before the summary's rename leaves it.
 fn crash_before_the_summary(site: &Site) {
-    let ledger = site.path("results/.meshgauge/ledger.jsonl");
-    let lines = BufReader::new(File::open(&ledger).expect("a ledger")).lines();
-    let lines: Vec<String> = lines.map(|line| line.expect("UTF-8")).collect();
-    let claim = lines.iter().find(|line| line.contains("claimed")).expect("a claim").clone();
-    fs::write(&ledger, claim + "\n{\"path\":\"a.m").expect("the end torn off");
+    let database = Connection::open(site.path("results/.meshgauge/state.db")).expect("a database");
+    let log = fs::OpenOptions::new().append(true).read(true).open(site.path("results/meshgauge.jsonl"));
+    let mut log = log.expect("a log");
+    let mut lines = BufReader::new(&log).lines().map(|line| line.expect("UTF-8"));
+    let before: usize = lines.by_ref().take_while(|l| !l.contains("mesh.scored")).map(|l| l.len() + 1).sum();
+    let undo = "UPDATE version SET stage = 'claimed'; DELETE FROM score; DELETE FROM shape;";
+    database.execute_batch(undo).expect("undone");
+    database.execute("UPDATE log_mark SET offset = ?1", [before]).expect("set back");
     fs::remove_file(site.path("results/a.summary.json")).expect("the summary was there");
     fs::write(site.path("results/.meshgauge-x1y2.tmp"), "{").expect("an unfinished summary");
-    let mut log =
-        fs::OpenOptions::new().append(true).open(site.path("results/meshgauge.jsonl")).expect("a log");
     log.write_all(b"{\"timestamp\":\"2026").expect("a torn line");
 }
 
@@ -102,6 +104,9 @@ fn a_crash_between_log_and_summary_is_mended_without_a_second_line() {
     assert_eq!(site.summaries(), ["a.summary.json"]);
     assert!(!site.path("results/.meshgauge-x1y2.tmp").exists());
     assert_eq!(site.summary("a.summary.json")["elements"]["count"], 1);
+    let database = Connection::open(site.path("results/.meshgauge/state.db")).expect("a database");
+    let rows = database.query_row("SELECT count(*) FROM history WHERE series = 'a'", [], |row| row.get(0));
+    assert_eq!(rows, Ok(4), "the four measures of tetrahedra");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod config;
 mod config_file;
 mod daemon;
 mod exit;
+mod file_system;
 mod folder;
 mod identity;
 mod logging;
@@ -16,6 +17,7 @@ mod publish;
 mod quantity;
 mod rules;
 mod selection;
+mod state;
 
 use std::process::ExitCode;
 

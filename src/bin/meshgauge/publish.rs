@@ -30,9 +30,9 @@ pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     sync_folder(folder_of(to))
 }
 
-/// Removes what a killed process left unfinished in the folder of `path`.
-pub fn sweep(path: &Path) {
-    let Ok(entries) = fs::read_dir(folder_of(path)) else { return };
+/// Removes what a killed process left unfinished in the folder.
+pub fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         if is_unfinished(&entry.file_name())
             && let Err(error) = fs::remove_file(entry.path())

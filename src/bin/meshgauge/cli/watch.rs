@@ -35,7 +35,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
 
-    /// Folder for the record of what was scored [default: $STATE_DIRECTORY, else RESULTS/.meshgauge].
+    /// Folder for the database of what was scored [default: $STATE_DIRECTORY, else RESULTS/.meshgauge].
     ///
     /// Remove it to have everything scored again.
     #[arg(long, value_name = "DIR")]

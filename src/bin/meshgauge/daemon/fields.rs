@@ -4,24 +4,16 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use meshgauge::Summary;
-use meshgauge::summary::{Reason, Status};
+use meshgauge::summary::Reason;
 
 use super::log::Event;
-
-/// The name of a status, as in the summary.
-pub fn name(status: Status) -> &'static str {
-    match status {
-        Status::Pass => "pass",
-        Status::Warn => "warn",
-        Status::Fail => "fail",
-    }
-}
+use super::protocol::Failure;
 
 /// Adds what a person would grep for: `elements`, and `min_M31` and `mean_M31` for each measure. Where shapes share a
 /// measure the shape goes before: `wedge.min_M21`.
 pub fn flatten(mut event: Event, summary: &Summary) -> Event {
     event = event
-        .with("status", name(summary.verdict.status))
+        .with("status", summary.verdict.status.name())
         .with("elements", summary.elements.count)
         .with("nodes", summary.nodes.count)
         .with("format", summary.mesh.format.as_str())
@@ -45,13 +37,28 @@ pub fn flatten(mut event: Event, summary: &Summary) -> Event {
     event
 }
 
+/// Adds why a mesh was not scored.
+pub fn failure(mut event: Event, failure: &Failure) -> Event {
+    event = event.with("kind", failure.kind.name()).with("reason", failure.reason.as_str());
+    if let Some(format) = &failure.format {
+        event = event.with("format", format.as_str());
+    }
+    if let Some(line) = failure.line {
+        event = event.with("line", line);
+    }
+    if let Some(byte) = failure.byte {
+        event = event.with("byte", byte);
+    }
+    event
+}
+
 /// One line for people.
 pub fn line(mesh: &Path, summary: &Summary, published: &Path) -> String {
     let shapes: Vec<_> =
         summary.main_shapes().map(|(shape, found)| format!("{} {shape}", found.count)).collect();
     let shapes = if shapes.is_empty() { "nothing to measure".into() } else { shapes.join(", ") };
     let reason = summary.verdict.reasons.first().map(|r| format!(" ({})", in_words(r))).unwrap_or_default();
-    let status = name(summary.verdict.status);
+    let status = summary.verdict.status.name();
     let published = published.display();
     printable(&format!("{}: {status}{reason}: {shapes} -> {published}", mesh.display()))
 }

@@ -2,18 +2,20 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use anyhow::Context;
 use serde_json::{Map, Value};
 
 use crate::path_text::PathText;
+use crate::state::{LogMark, Logged};
 
 /// The log, open to append to.
 pub struct Log {
     path: PathBuf,
     file: File,
-    length: u64,
 }
 
 /// One line of the log: `timestamp`, `level`, `event`, `mesh` where it is about one, then the rest.
@@ -51,6 +53,11 @@ impl Event {
         }
     }
 
+    /// The event's name.
+    pub fn name(&self) -> &str {
+        self.0["event"].as_str().unwrap_or_default()
+    }
+
     /// With a further field.
     pub fn with(mut self, key: impl Into<String>, value: impl Into<Value>) -> Self {
         self.0.insert(key.into(), value.into());
@@ -72,52 +79,62 @@ impl Log {
             file.set_len(whole)?;
             file.sync_all()?;
         }
-        Ok((Self { path: path.to_owned(), file, length: whole }, torn))
+        Ok((Self { path: path.to_owned(), file }, torn))
     }
 
-    /// Number of bytes of the log.
-    pub fn length(&self) -> u64 {
-        self.length
+    /// The end of the log.
+    pub fn mark(&self) -> io::Result<LogMark> {
+        let data = self.file.metadata()?;
+        Ok(LogMark { inode: data.ino(), offset: data.len() })
     }
 
-    /// Appends one line by one write, and has it on disk when it returns.
+    /// Appends one line by one write.
     pub fn append(&mut self, event: Event) -> anyhow::Result<()> {
+        self.write(event).with_context(|| self.path.display().to_string())
+    }
+
+    /// Appends one line by one write, and has the log on disk when it returns.
+    pub fn append_durably(&mut self, event: Event) -> anyhow::Result<()> {
+        let written = self.write(event).and_then(|()| self.file.sync_data());
+        written.with_context(|| self.path.display().to_string())
+    }
+
+    fn write(&mut self, event: Event) -> io::Result<()> {
         let mut line = Value::Object(event.0).to_string();
         line.push('\n');
-        self.write(line.as_bytes()).map_err(|e| anyhow::anyhow!("{}: {e}", self.path.display()))
-    }
-
-    fn write(&mut self, line: &[u8]) -> io::Result<()> {
-        // Somebody else may have cut the file, as log rotation by copying does.
-        self.length = self.file.metadata()?.len();
-        let written = self.file.write(line)?;
+        let length = self.file.metadata()?.len();
+        let written = self.file.write(line.as_bytes())?;
         if written < line.len() {
-            self.file.set_len(self.length)?;
+            self.file.set_len(length)?;
             return Err(io::Error::new(io::ErrorKind::StorageFull, "no room for a whole line"));
         }
-        self.file.sync_data()?;
-        self.length += line.len() as u64;
         Ok(())
     }
 
-    /// The event's name in the last line from byte `from` on whose `id` is the given one.
-    pub fn outcome(&self, id: &str, from: u64) -> io::Result<Option<String>> {
+    /// The outcomes that the log tells behind the mark.
+    pub fn outcomes_since(&self, mark: LogMark) -> io::Result<Vec<Logged>> {
         let mut file = File::open(&self.path)?;
-        file.seek(SeekFrom::Start(from))?;
+        let same = file.metadata()?.ino() == mark.inode;
+        file.seek(SeekFrom::Start(if same { mark.offset } else { 0 }))?;
         let mut lines = BufReader::new(file);
-        let (mut line, mut outcome) = (Vec::new(), None);
+        let (mut line, mut outcomes) = (Vec::new(), Vec::new());
         while lines.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? > 0 {
-            let event: Option<Value> = serde_json::from_slice(&line).ok();
-            if let Some(event) = event.filter(|e| e["id"] == id)
-                && let Some("mesh.scored" | "mesh.failed" | "mesh.ignored") = event["event"].as_str()
-            {
-                outcome = event["event"].as_str().map(String::from);
-            }
+            outcomes.extend(outcome(&line));
             line.clear();
         }
-        Ok(outcome)
+        Ok(outcomes)
     }
 }
+
+/// The outcome that a line tells, if it tells one.
+fn outcome(line: &[u8]) -> Option<Logged> {
+    let line: Value = serde_json::from_slice(line).ok()?;
+    let (id, event) = (line["id"].as_str()?, line["event"].as_str()?);
+    OUTCOMES.contains(&event).then(|| Logged { id: id.into(), event: event.into() })
+}
+
+/// The events that end a version of a mesh, or one try at it.
+const OUTCOMES: [&str; 4] = ["mesh.scored", "mesh.failed", "mesh.quarantined", "mesh.ignored"];
 
 /// Lines of ours are shorter by far.
 const LONGEST_LINE: u64 = 1 << 20;
@@ -192,15 +209,19 @@ mod tests {
     }
 
     #[test]
-    fn an_outcome_is_found_by_its_id_behind_the_given_place() {
+    fn outcomes_behind_the_mark_are_found() {
         let folder = tempfile::tempdir().expect("a folder");
         let (mut log, _) = Log::open(&folder.path().join("log.jsonl")).expect("opened");
+        let found = |log: &Log, mark| -> Vec<_> {
+            log.outcomes_since(mark).expect("read").into_iter().map(|o| (o.id, o.event)).collect()
+        };
+        let start = log.mark().expect("a mark");
         log.append(Event::info("mesh.claimed").with("id", "7")).expect("written");
-        let claimed = log.length();
-        assert_eq!(log.outcome("7", 0).expect("read"), None);
-        log.append(Event::info("mesh.scored").with("id", "7")).expect("written");
-        assert_eq!(log.outcome("7", claimed).expect("read").as_deref(), Some("mesh.scored"));
-        assert_eq!(log.outcome("8", 0).expect("read"), None);
-        assert_eq!(log.outcome("7", log.length()).expect("read"), None);
+        assert_eq!(found(&log, start), []);
+        log.append_durably(Event::info("mesh.scored").with("id", "7")).expect("written");
+        let scored = vec![("7".to_owned(), "mesh.scored".to_owned())];
+        assert_eq!(found(&log, start), scored);
+        assert_eq!(found(&log, LogMark { inode: 0, ..log.mark().expect("a mark") }), scored, "another file");
+        assert_eq!(found(&log, log.mark().expect("a mark")), []);
     }
 }

@@ -3,11 +3,10 @@
 //! One loop owns all state: it looks (`folder`), waits until files stand still (`tracking`), hands them to workers
 //! (`pool`) and puts down what became of them (`record`). Events of the kernel only make it look sooner.
 
+mod done;
 mod fields;
 mod hints;
-mod ledger;
 mod log;
-mod mount;
 mod pool;
 mod process;
 mod protocol;
@@ -26,9 +25,10 @@ use anyhow::Context;
 
 use crate::config::{Config, Watch};
 use crate::exit::{Status, Usage};
+use crate::file_system;
 use crate::folder::Walk;
+use crate::state::State;
 
-use ledger::Ledger;
 use log::{Event, Log};
 use record::Record;
 use watching::Watching;
@@ -81,15 +81,15 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
         let drop = places.drop.display();
         return Err(Usage(format!("{drop}: expected a folder that meshes are dropped into")).into());
     }
-    if let Some(advice) = mount::advice(&places.drop, config.watch.settle.0) {
+    if let Some(advice) = file_system::advice(&places.drop, config.watch.settle.0) {
         tracing::warn!("{}: {advice}", places.drop.display());
     }
     let stop = signals::stop_requests().context("signals")?;
     record::make_folders([&places.results, &places.state])?;
     let lock = lock(&places.state)?;
     let (log, torn) = Log::open(&places.log).with_context(|| places.log.display().to_string())?;
-    let ledger = Ledger::open(&places.state)?;
-    let mut record = Record::new(log, ledger, &places.results, mode.quiet)?;
+    let state = State::open(&places.state)?;
+    let mut record = Record::new(log, state, &places.results, mode.quiet)?;
     if torn > 0 {
         record.event(Event::warn("log.repaired").with("bytes", torn))?;
     }

@@ -167,14 +167,14 @@ impl Watching {
         for (path, found) in &scan.files {
             match found {
                 Found::Other(what) => {
-                    if !self.record.was_ignored(path) {
+                    if !self.record.is_done(path, &Identity::default())? {
                         self.record.ignored(path, &Identity::default(), &format!("it is {what}"))?;
                     }
                 }
                 Found::File(identity) if self.tracking.contains(path) => {
                     self.tracking.look(path, *identity, now);
                 }
-                Found::File(identity) if self.record.is_done(path, identity) => {}
+                Found::File(identity) if self.record.is_done(path, identity)? => {}
                 Found::File(identity) => {
                     let announced = has_mesh_extension(path.file_name().unwrap_or_default());
                     if announced {
@@ -184,6 +184,7 @@ impl Watching {
                 }
             }
         }
+        self.record.scanned(scan.files.len());
         let end = Instant::now();
         if self.scanned.is_none() {
             self.service.ready();

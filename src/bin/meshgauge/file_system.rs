@@ -1,4 +1,4 @@
-//! What kind of file system the drop is on, as far as it matters for settling.
+//! What kind of file system a folder is on, as far as it matters for settling and for the state.
 
 use std::path::Path;
 use std::time::Duration;
@@ -21,10 +21,15 @@ const REMOTE: &[(i64, &str)] = &[
     (0x0102_1997, "9P"),
 ];
 
+/// The name of the network file system that the folder is on, if it is on one.
+pub fn network(folder: &Path) -> Option<&'static str> {
+    let kind = rustix::fs::statfs(folder).ok()?.f_type;
+    REMOTE.iter().find(|(number, _)| *number == kind).map(|(_, name)| *name)
+}
+
 /// Advice where the settle time is shorter than what a network file system needs.
 pub fn advice(drop: &Path, settle: Duration) -> Option<String> {
-    let kind = rustix::fs::statfs(drop).ok()?.f_type;
-    let (_, name) = REMOTE.iter().find(|(number, _)| *number == kind)?;
+    let name = network(drop)?;
     (settle < CACHED).then(|| {
         format!(
             "on {name} another machine's writes may show late: set watch.settle over {} s, or have producers \
