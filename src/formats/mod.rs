@@ -20,6 +20,7 @@ mod medit;
 mod nag;
 mod nastran;
 mod netgen;
+mod openfoam;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;
@@ -37,10 +38,11 @@ mod vtk;
 pub mod words;
 
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::error::Result;
-use crate::input::{Input, Source};
+use crate::input::{Input, Limits, Scratch, Source};
 use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
@@ -67,6 +69,11 @@ pub trait Format: Sync {
     /// instead of the mesh's.
     fn own_orientation(&self) -> &'static [Shape] {
         &[]
+    }
+    /// The files, the main one first, of the mesh that stands under `path`, where a mesh of this format is several files in
+    /// a folder. `path` may be the folder or one of the files; names alone decide.
+    fn files(&self, _path: &Path) -> Option<Result<Vec<PathBuf>>> {
+        None
     }
     /// Says where the node and element records stand, in file order. Headers are not believed: what is yielded must lie
     /// in the file.
@@ -142,9 +149,23 @@ pub static FORMATS: &[&dyn Format] = &[
     &unv::Unv,
     &ansys::Ansys,
     &lsdyna::Lsdyna,
+    &openfoam::OpenFoam,
 ];
 
 /// The format named `name`.
 pub fn find(name: &str) -> Option<&'static dyn Format> {
     FORMATS.iter().copied().find(|f| f.name() == name)
+}
+
+/// The files, the main one first, of a mesh that is several files: [`Format::files`] of whichever format knows them.
+pub fn files(path: &Path) -> Option<Result<Vec<PathBuf>>> {
+    FORMATS.iter().find_map(|format| format.files(path))
+}
+
+/// Opens the mesh at `path`: a file, or several that [`files`] finds.
+pub fn open(path: &Path, limits: &Limits, scratch: &Scratch) -> Result<Input> {
+    match files(path) {
+        Some(files) => Input::open_together(path, &files?, limits, scratch),
+        None => Input::open(path, limits, scratch),
+    }
 }

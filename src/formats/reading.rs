@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::{Chunks, ElementSink, Format, Ledger, NodeBatch, Plan};
 use crate::error::Result;
-use crate::input::{Input, Limits, Scratch};
-use crate::mesh::{Budget, Chunk, Nodes, NodesBuilder, Shape};
+use crate::input::{Limits, Scratch};
+use crate::mesh::{Chunk, Nodes, NodesBuilder, Shape};
 
 /// A mesh in memory.
 #[derive(Debug)]
@@ -33,10 +33,10 @@ impl Chunks for Kept {
 /// Reads `path` as `format`.
 pub(crate) fn read(format: &dyn Format, path: &Path) -> Result<Mesh> {
     let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
-    let input = Input::open(path, &Limits::default(), &scratch)?;
+    let input = super::open(path, &Limits::default(), &scratch)?;
     let mut pieces = Plan::default();
     format.outline(&input, &mut pieces)?;
-    let mut builder = NodesBuilder::new(&Budget::new(1 << 28), &scratch);
+    let mut builder = NodesBuilder::new(&input.memory, &scratch);
     let mut batch = NodeBatch::default();
     for piece in &pieces.nodes {
         batch.clear();

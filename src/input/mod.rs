@@ -1,5 +1,6 @@
 //! Bytes: mapped files, what is unpacked to scratch first, and the siblings that a file includes.
 
+mod budget;
 mod compression;
 mod content;
 mod include;
@@ -19,7 +20,9 @@ use std::sync::{Arc, OnceLock};
 
 use crate::error::{Error, Kind, Result};
 use packed::Packed;
+use xxhash_rust::xxh3::xxh3_64;
 
+pub use budget::Budget;
 pub use compression::Compression;
 pub use content::looks_like;
 pub use include::{Sibling, Siblings};
@@ -68,6 +71,8 @@ pub struct Input {
     pub source: Arc<Source>,
     /// Where what cannot be mapped goes.
     pub scratch: Scratch,
+    /// What tables of the mesh may take of memory before they go to scratch.
+    pub memory: Budget,
     /// The limits in force.
     pub limits: Limits,
     /// What the bytes were packed with: `gzip`, `zstd`, `bzip2`, `xz`, `lz4`.
@@ -76,6 +81,10 @@ pub struct Input {
     pub bytes_on_disk: u64,
     /// The folder that the files which this one names must lie in; a stream has none.
     folder: Option<PathBuf>,
+    /// The files of a mesh that is several, the main one first; none, where it is one.
+    pub parts: Arc<[Input]>,
+    /// What the user calls the mesh, where that is not the main file's name.
+    called: Option<PathBuf>,
     xxh3: Arc<OnceLock<u64>>,
 }
 
@@ -87,6 +96,26 @@ impl Input {
         let folder = path.parent().unwrap_or(Path::new(""));
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         Ok(Self { folder: Some(folder.to_owned()), ..Self::open_file(path, &file, limits, scratch)? })
+    }
+
+    /// Opens a mesh that is several files, the main one first; the user knows it as `path`, which may be their folder.
+    pub fn open_together(path: &Path, files: &[PathBuf], limits: &Limits, scratch: &Scratch) -> Result<Self> {
+        let parts = files.iter().map(|file| Self::open(file, limits, scratch));
+        let parts: Arc<[Self]> = parts.collect::<Result<_>>()?;
+        let Some(main) = parts.first() else { return Self::open(path, limits, scratch) };
+        Ok(Self {
+            compression: parts.iter().find_map(|part| part.compression),
+            bytes_on_disk: parts.iter().map(|part| part.bytes_on_disk).sum(),
+            called: Some(path.to_owned()),
+            xxh3: Arc::default(),
+            parts: Arc::clone(&parts),
+            ..main.clone()
+        })
+    }
+
+    /// The name that the user knows the mesh by.
+    pub fn path(&self) -> &Path {
+        self.called.as_deref().unwrap_or(self.source.path())
     }
 
     /// The mesh in an open regular file that the user knows as `path`.
@@ -111,7 +140,8 @@ impl Input {
     }
 
     /// The XXH3 (64 bits) of the bytes as they stand on disk, or as they came in. Where it is not known yet the file
-    /// is read for it, once; another thread may do this while the mesh is being scored.
+    /// is read for it, once; another thread may do this while the mesh is being scored. Of several files it is the XXH3
+    /// of theirs, big-endian, one after another.
     pub fn xxh3(&self) -> u64 {
         self.xxh3_unless(&AtomicBool::new(false)).expect("nobody stops it")
     }
@@ -121,10 +151,16 @@ impl Input {
         match self.xxh3.get() {
             Some(hash) => Some(*hash),
             None => {
-                let hash = self.source.xxh3(stop)?;
+                let hash = if self.parts.is_empty() { self.source.xxh3(stop)? } else { self.of_parts(stop)? };
                 Some(*self.xxh3.get_or_init(|| hash))
             }
         }
+    }
+
+    /// The hash of the hashes of the files.
+    fn of_parts(&self, stop: &AtomicBool) -> Option<u64> {
+        let hashes: Option<Vec<_>> = self.parts.iter().map(|part| part.xxh3_unless(stop)).collect();
+        Some(xxh3_64(&hashes?.iter().flat_map(|hash| hash.to_be_bytes()).collect::<Vec<_>>()))
     }
 
     /// [`Input::xxh3`] as 16 hexadecimal digits.
@@ -164,10 +200,13 @@ impl Input {
         Ok(Self {
             source: Arc::new(source),
             scratch: scratch.clone(),
+            memory: Budget::default(),
             limits: limits.clone(),
             compression,
             bytes_on_disk,
             folder: None,
+            parts: Arc::default(),
+            called: None,
             xxh3: Arc::new(xxh3),
         })
     }

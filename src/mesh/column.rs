@@ -3,37 +3,12 @@
 
 use std::fs::File;
 use std::marker::PhantomData;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytemuck::Pod;
 use memmap2::MmapMut;
 
 use crate::error::{Error, Result};
-use crate::input::{Scratch, ScratchFile, ScratchShare};
-
-/// A number of bytes that may be held in memory, shared by all who hold some.
-#[derive(Debug, Clone)]
-pub struct Budget {
-    left: Arc<AtomicU64>,
-}
-
-impl Budget {
-    /// A budget of `bytes`.
-    pub fn new(bytes: u64) -> Self {
-        Self { left: Arc::new(AtomicU64::new(bytes)) }
-    }
-
-    /// Takes `bytes` of the budget, or nothing.
-    pub fn take(&self, bytes: u64) -> bool {
-        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(bytes)).is_ok()
-    }
-
-    /// Gives `bytes` back.
-    pub fn give_back(&self, bytes: u64) {
-        self.left.fetch_add(bytes, Ordering::Relaxed);
-    }
-}
+use crate::input::{Budget, Scratch, ScratchFile, ScratchShare};
 
 /// A column that is being filled.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ mod nodes;
 mod shape;
 
 pub use chunk::{CHUNK, Chunk, Origin};
-pub use column::{Budget, Column, ColumnBuilder};
+pub use column::{Column, ColumnBuilder};
 pub use element::{Class, ElementType, IN_ORDER};
 pub use nodes::{Bounds, Nodes, NodesBuilder};
 pub use shape::{Facts, Shape};

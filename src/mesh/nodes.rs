@@ -6,9 +6,9 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::column::{Budget, Column, ColumnBuilder};
+use super::column::{Column, ColumnBuilder};
 use crate::error::{Error, Result};
-use crate::input::Scratch;
+use crate::input::{Budget, Scratch};
 
 /// More runs of consecutive numbers than this, and numbers are kept one by one.
 const MOST_RUNS: usize = 1 << 16;

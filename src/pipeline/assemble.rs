@@ -61,10 +61,12 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
 }
 
 fn mesh_file(found: &Found<'_>) -> MeshFile {
-    let path = found.input.source.path();
+    let path = found.input.path();
     let extensions: Vec<_> = FORMATS.iter().flat_map(|format| format.extensions()).copied().collect();
+    // The folder `.` has a name, too.
+    let named = if path.file_name().is_none() { path.canonicalize().ok() } else { None };
     MeshFile {
-        name: mesh_name(path, &extensions).to_string_lossy().into_owned(),
+        name: mesh_name(named.as_deref().unwrap_or(path), &extensions).to_string_lossy().into_owned(),
         path: path.to_string_lossy().into_owned(),
         format: found.format.name().to_owned(),
         compression: found.input.compression.map(str::to_owned),

@@ -17,19 +17,24 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::error::Result;
+use crate::formats;
 use crate::input::{Input, Scratch};
 use crate::summary::Summary;
 
 pub use options::{Options, Progress};
 
-/// Scores the mesh in the file at `path`.
+/// Scores the mesh in the file at `path`, or in the folder, where a mesh of its format is a folder.
 pub fn score(path: &Path, options: &Options) -> Result<Summary> {
     let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
-    run::run(&Input::open(path, &options.limits, &scratch)?, options)
+    let mut input = formats::open(path, &options.limits, &scratch)?;
+    input.memory = run::budget(options);
+    run::run(&input, options)
 }
 
 /// Scores a mesh that comes from a stream, such as standard input; it is spooled to scratch first.
 pub fn score_reader(name: &str, reader: impl Read, options: &Options) -> Result<Summary> {
     let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
-    run::run(&Input::from_reader(Path::new(name), reader, &options.limits, &scratch)?, options)
+    let mut input = Input::from_reader(Path::new(name), reader, &options.limits, &scratch)?;
+    input.memory = run::budget(options);
+    run::run(&input, options)
 }

@@ -10,8 +10,8 @@ use super::nodes::read_nodes;
 use super::{Options, Progress};
 use crate::error::{Error, Kind, Result};
 use crate::formats::{self, FORMATS, Format, HEAD_BYTES, Plan};
-use crate::input::{Input, looks_like};
-use crate::mesh::{Budget, CHUNK, NodesBuilder, Shape};
+use crate::input::{Budget, Input, looks_like};
+use crate::mesh::{CHUNK, NodesBuilder, Shape};
 use crate::summary::Summary;
 
 /// Scores an open mesh.
@@ -22,7 +22,7 @@ pub(super) fn run(input: &Input, options: &Options) -> Result<Summary> {
 /// Scores an open mesh as one of the given format.
 pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Options) -> Result<Summary> {
     let started = (SystemTime::now(), Instant::now());
-    let named = |error: Error| error.in_format(format.name()).in_file(input.source.path());
+    let named = |error: Error| error.in_format(format.name()).in_file(input.path());
     let quiet = Progress::default();
     let progress = options.progress.as_deref().unwrap_or(&quiet);
     let threads = options.threads.max(1);
@@ -62,13 +62,17 @@ fn measure(
         element_pieces = plan.elements.len(),
         "outlined"
     );
-    let budget = Budget::new(options.memory.saturating_sub(buffer_bytes(threads)));
-    let builder = NodesBuilder::new(&budget, &input.scratch);
+    let builder = NodesBuilder::new(&input.memory, &input.scratch);
     let nodes = read_nodes(&plan.nodes, threads, builder, progress)?;
     tracing::debug!(nodes = nodes.count(), spilled = nodes.is_spilled(), "nodes read");
     let (mut merged, bins) = measure_elements(&plan.elements, &nodes, threads, options, progress)?;
     merged.ledger.merge(&plan.ledger);
     Ok((nodes, merged, bins))
+}
+
+/// The memory that is left for tables once the chunks in flight have theirs.
+pub(super) fn budget(options: &Options) -> Budget {
+    Budget::new(options.memory.saturating_sub(buffer_bytes(options.threads.max(1))))
 }
 
 /// Memory of the chunks in flight.
@@ -94,6 +98,6 @@ fn choose(input: &Input, name: Option<&str>) -> Result<&'static dyn Format> {
             text.push_str(&format!(" {} ({});", format.name(), format.looks_for()));
         }
         text.pop();
-        Error::new(Kind::UnknownFormat(text)).in_file(input.source.path())
+        Error::new(Kind::UnknownFormat(text)).in_file(input.path())
     })
 }

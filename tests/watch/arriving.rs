@@ -2,6 +2,7 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
+use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -125,4 +126,26 @@ fn a_name_that_is_not_utf8_is_scored_and_logged_without_loss() {
     assert!(site.path("results").join(std::ffi::OsStr::from_bytes(b"\xff\n.summary.json")).exists());
     assert_eq!(site.once(&[]), Some(0));
     assert_eq!(site.events("mesh.scored").len(), 1);
+}
+
+#[test]
+fn a_case_of_openfoam_is_one_mesh_and_each_version_is_scored() {
+    let site = Site::new();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/openfoam/mixed_ascii");
+    let case = site.path("drop/runs/cavity/constant/polyMesh");
+    fs::create_dir_all(&case).expect("a case");
+    for name in ["points", "faces", "owner", "neighbour"] {
+        fs::copy(mesh.join(name), case.join(name)).expect("copied");
+    }
+    site.write("drop/runs/cavity/system/controlDict", "FoamFile { class dictionary; }");
+    assert_eq!(site.once(&[]), Some(0));
+    assert_eq!(site.summaries(), ["runs/cavity.summary.json"]);
+    assert_eq!(site.events_of("mesh.scored", "runs/cavity")[0]["elements"], 36);
+    assert_eq!(site.once(&[]), Some(0));
+    assert_eq!(site.events("mesh.scored").len(), 1);
+    fs::copy(mesh.join("points"), site.path("drop/points")).expect("copied");
+    fs::rename(site.path("drop/points"), case.join("points")).expect("replaced");
+    assert_eq!(site.once(&[]), Some(0));
+    assert_eq!(site.events("mesh.scored").len(), 2);
+    assert_eq!(site.events("mesh.ignored").len(), 0);
 }

@@ -1,12 +1,15 @@
 //! Reads a folder through: what stands in it, in the order of the names.
 //!
 //! Files are looked at and not opened, so a FIFO cannot hold us up. Names of files that are still being written are
-//! passed over, as are our own results.
+//! passed over, as are our own results. A folder that is one mesh, such as a case of OpenFOAM, stands among the files and
+//! is not looked into.
 
 use std::fs::{self, Metadata};
 use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
+
+use meshgauge::formats;
 
 use crate::config::{Symlinks, Watch};
 use crate::identity::Identity;
@@ -34,7 +37,7 @@ pub struct Scan {
 /// What stands under a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Found {
-    /// A regular file.
+    /// A regular file, or a mesh that is several in a folder.
     File(Identity),
     /// Anything else, in words.
     Other(&'static str),
@@ -123,11 +126,16 @@ impl Walk {
             if excluded.contains(&place(&data)) {
                 continue;
             }
-            if data.is_dir() {
-                below.push(path);
-            } else {
-                let found = self.found(&path, &data);
+            if !data.is_dir() {
+                if !self.is_part(&path) {
+                    let found = self.found(&path, &data);
+                    scan.files.push((path, found));
+                }
+            } else if let Some((found, files)) = self.mesh_of_folder(&path) {
+                self.follow_mesh(&files, scan);
                 scan.files.push((path, found));
+            } else {
+                below.push(path);
             }
         }
         Ok(())
@@ -136,7 +144,46 @@ impl Walk {
     /// What stands under the name of a file now; `None` if nothing does.
     pub fn look(&self, path: &Path) -> Option<Found> {
         let data = fs::symlink_metadata(self.root.join(path)).ok()?;
-        Some(self.found(path, &data))
+        let mesh = data.is_dir().then(|| self.mesh_of_folder(path)).flatten();
+        Some(mesh.map_or_else(|| self.found(path, &data), |(found, _)| found))
+    }
+
+    /// What the mesh is that a folder holds, and its files, if the folder is one mesh.
+    fn mesh_of_folder(&self, path: &Path) -> Option<(Found, Vec<PathBuf>)> {
+        let path = self.root.join(path);
+        let files = match formats::files(&path)? {
+            Ok(files) => files,
+            // The reader will say why it cannot be read.
+            Err(_) => Vec::new(),
+        };
+        let leads_out = |file: &PathBuf| self.symlinks != Symlinks::All && !self.is_inside(file);
+        if files.iter().any(|file| file.exists() && leads_out(file)) {
+            return Some((Found::Other("a mesh with files outside of the folder"), files));
+        }
+        Identity::of(&path).ok().map(|identity| (Found::File(identity), files))
+    }
+
+    /// Whether a file belongs to a mesh that another file stands for.
+    fn is_part(&self, path: &Path) -> bool {
+        let path = self.root.join(path);
+        let files = formats::files(&path).and_then(Result::ok);
+        files.is_some_and(|files| files.first().and_then(|main| main.file_name()) != path.file_name())
+    }
+
+    /// Adds the folder that the files of a mesh lie in to those whose changes are worth a look.
+    fn follow_mesh(&self, files: &[PathBuf], scan: &mut Scan) {
+        let folder = files.first().and_then(|file| file.parent());
+        if let Some(folder) = folder
+            && let (Ok(inner), Ok(data)) = (folder.strip_prefix(&self.root), fs::metadata(folder))
+        {
+            scan.folders.push((inner.to_owned(), place(&data)));
+        }
+    }
+
+    /// Whether a file lies in the folder that is walked through, wherever symbolic links lead.
+    fn is_inside(&self, file: &Path) -> bool {
+        let root = fs::canonicalize(&self.root);
+        root.and_then(|root| Ok(fs::canonicalize(file)?.starts_with(root))).unwrap_or(false)
     }
 
     fn found(&self, path: &Path, data: &Metadata) -> Found {
@@ -160,13 +207,12 @@ impl Walk {
         if self.symlinks == Symlinks::None {
             return Found::Other("a symbolic link");
         }
-        let (Ok(target), Ok(data)) = (fs::canonicalize(link), fs::metadata(link)) else {
+        let Ok(data) = fs::metadata(link) else {
             return Found::Other("a symbolic link that leads nowhere");
         };
-        let inside = fs::canonicalize(&self.root).is_ok_and(|root| target.starts_with(root));
         if !data.is_file() {
             Found::Other("a symbolic link to something other than a file")
-        } else if self.symlinks == Symlinks::Inside && !inside {
+        } else if self.symlinks == Symlinks::Inside && !self.is_inside(link) {
             Found::Other("a symbolic link that leads out of the folder")
         } else {
             Found::File(Identity::from(&data))

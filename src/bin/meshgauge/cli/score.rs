@@ -27,7 +27,7 @@ use crate::selection;
 pub struct Args {
     /// Mesh files, folders, or - for standard input.
     ///
-    /// Of a folder every file is scored that has the extension or the content of a mesh format, sub-folders too, in the
+    /// A folder that is one mesh, as a case of OpenFOAM, is scored as such. Of any other every file is scored that has the extension or the content of a mesh format, sub-folders too, in the
     /// order of their names. Names that begin with a dot or end like a file that is still being written are passed
     /// over, as is what has neither a mesh extension nor known content.
     #[arg(required = true, value_name = "FILE|DIR|-")]
@@ -164,7 +164,7 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
     let mut status = Status::Fine;
     let meshes = meshes(&args.inputs, config, &mut status);
     let places = args.out.as_deref().map(|out| places(&meshes, out)).transpose()?;
-    let many = args.inputs.len() > 1 || args.inputs[0].is_dir();
+    let many = args.inputs.len() > 1 || meshes.first().is_none_or(|mesh| mesh.within.is_some());
     let print = !args.quiet || args.format.is_some();
     let mut output = print.then(|| Output::new(args.format.as_deref(), many));
     for (i, mesh) in meshes.iter().enumerate() {
@@ -221,7 +221,8 @@ impl Mesh {
 fn meshes(inputs: &[PathBuf], config: &Config, status: &mut Status) -> Vec<Mesh> {
     let mut meshes = Vec::new();
     for path in inputs {
-        if path.as_os_str() == "-" || !path.is_dir() {
+        let is_file = path.as_os_str() == "-" || !path.is_dir();
+        if is_file || meshgauge::formats::files(path).is_some() {
             meshes.push(Mesh { path: path.clone(), within: None });
             continue;
         }

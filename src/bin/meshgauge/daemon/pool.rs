@@ -1,8 +1,6 @@
 //! A fixed number of threads, each with a worker process that it replaces when that dies.
 
-use std::fs::OpenOptions;
 use std::io;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 use meshgauge::Summary;
-use rustix::fs::OFlags;
 
 use super::process::{NoAnswer, Process, deadline};
 use super::protocol::{Answer, Failure, FailureKind, Request};
@@ -178,10 +175,8 @@ impl Seat {
 
 /// What stands under the name, if it is not the version that settled.
 fn other_version(path: &Path, identity: &Identity) -> Option<Found> {
-    // A FIFO that took the name must not hold us up.
-    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits().cast_signed();
-    match OpenOptions::new().read(true).custom_flags(flags).open(path).and_then(|file| file.metadata()) {
-        Ok(data) if identity.same_version(&Identity::from(&data)) => None,
+    match Identity::of(path) {
+        Ok(now) if identity.same_version(&now) => None,
         Ok(_) => Some(Found::Changed),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Some(Found::Gone),
         // The worker will meet the same error and say so.

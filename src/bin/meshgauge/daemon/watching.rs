@@ -176,7 +176,8 @@ impl Watching {
                 }
                 Found::File(identity) if self.record.is_done(path, identity)? => {}
                 Found::File(identity) => {
-                    let announced = has_mesh_extension(path.file_name().unwrap_or_default());
+                    let is_mesh = has_mesh_extension(path.file_name().unwrap_or_default());
+                    let announced = is_mesh || self.walk.root().join(path).is_dir();
                     if announced {
                         self.record.detected(path, identity)?;
                     }

@@ -12,11 +12,9 @@ use crate::error::{Error, Result};
 use crate::formats::binary::{Endian, cut_records};
 use crate::formats::surface::faces;
 use crate::formats::{ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, Piece};
-use crate::input::{Input, Scratch, ScratchFile, Source};
-use crate::mesh::{Budget, Column};
+use crate::input::{Budget, Input, Scratch, ScratchFile, Source};
+use crate::mesh::Column;
 
-/// What the hash table may take of memory, in bytes.
-const MEMORY: u64 = 128 << 20;
 /// Slots of the table at first.
 const SLOTS: usize = 1 << 12;
 /// Number of bytes of a point and of a facet in scratch.
@@ -42,7 +40,7 @@ pub(super) struct Welder {
 
 impl Welder {
     pub(super) fn new(input: &Input) -> Result<Self> {
-        let (scratch, budget) = (input.scratch.clone(), Budget::new(MEMORY));
+        let (scratch, budget) = (input.scratch.clone(), input.memory.clone());
         Ok(Self {
             source: Arc::clone(&input.source),
             slots: Column::zeroed(SLOTS, &budget, &scratch)?,
