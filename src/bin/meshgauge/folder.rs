@@ -151,11 +151,8 @@ impl Walk {
     /// What the mesh is that a folder holds, and its files, if the folder is one mesh.
     fn mesh_of_folder(&self, path: &Path) -> Option<(Found, Vec<PathBuf>)> {
         let path = self.root.join(path);
-        let files = match formats::files(&path)? {
-            Ok(files) => files,
-            // The reader will say why it cannot be read.
-            Err(_) => Vec::new(),
-        };
+        // Where it cannot be read the reader will say why.
+        let files = formats::files(&path)?.unwrap_or_default();
         let leads_out = |file: &PathBuf| self.symlinks != Symlinks::All && !self.is_inside(file);
         if files.iter().any(|file| file.exists() && leads_out(file)) {
             return Some((Found::Other("a mesh with files outside of the folder"), files));
