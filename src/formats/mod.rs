@@ -47,7 +47,7 @@ use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
 pub use plan::Plan;
-pub use sink::{Chunks, ElementSink, Ledger, TypeCount};
+pub use sink::{BLOCK, Chunks, ElementSink, Ledger, TypeCount};
 
 /// The number of bytes that a piece aims at. It does not depend on threads or budget: chunks, and so the last bits of
 /// every mean, follow from it.

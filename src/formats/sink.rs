@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::input::Spot;
-use crate::mesh::{Chunk, Class, ElementType, Nodes, Origin, Shape};
+use crate::mesh::{Chunk, Class, ElementType, IN_ORDER, Nodes, Origin, Shape};
+
+/// The most elements that a decoder hands over at a time.
+pub const BLOCK: usize = 128;
 
 /// Where full chunks go and empty ones come from.
 pub trait Chunks {
@@ -102,7 +105,7 @@ impl<'a> ElementSink<'a> {
     /// Adds an element. `label` is its own number, `ids` are its nodes as they stand in the record.
     #[inline]
     pub fn element(&mut self, label: u64, kind: &Arc<ElementType>, ids: &[u64]) -> Result<()> {
-        self.count_one(kind);
+        self.count_run(kind, 1);
         match &kind.class {
             Class::Measured { shape, corners, .. } => self.measured(label, *shape, corners, ids),
             Class::Counted(_) => {
@@ -112,13 +115,72 @@ impl<'a> ElementSink<'a> {
         }
     }
 
+    /// Adds at most [`BLOCK`] elements of one type as [`Self::element`] would one after another, only faster. `ids` are
+    /// `kind.nodes` nodes of each.
+    ///
+    /// Takes all or none: `false` says that some element wants a closer look, so that all must be added one by one.
+    #[must_use = "elements that were not taken must be added one by one"]
+    pub fn block(&mut self, kind: &Arc<ElementType>, labels: &[u64], ids: &[u64]) -> Result<bool> {
+        debug_assert!(labels.len() <= BLOCK && ids.len() == labels.len() * kind.nodes);
+        let Class::Measured { shape, corners, .. } = &kind.class else { return Ok(false) };
+        macro_rules! with_corners {
+            ($($count:literal),*) => {
+                $(if let Ok(corners) = (*corners).try_into() {
+                    return self.block_by::<$count>(kind, *shape, corners, labels, ids);
+                })*
+            };
+        }
+        with_corners!(4, 8, 3, 6, 5);
+        unreachable!("no shape has {} corners", corners.len())
+    }
+
+    fn block_by<const CORNERS: usize>(
+        &mut self,
+        kind: &Arc<ElementType>,
+        shape: Shape,
+        corners: &[u8; CORNERS],
+        labels: &[u64],
+        ids: &[u64],
+    ) -> Result<bool> {
+        let mut rows = [[0u32; CORNERS]; BLOCK];
+        let rows = &mut rows[..labels.len()];
+        let known = if kind.nodes == CORNERS && *corners == IN_ORDER[..CORNERS] {
+            self.nodes.rows_of(ids, rows.as_flattened_mut())
+        } else {
+            let mut chosen = [[0u64; CORNERS]; BLOCK];
+            for (chosen, ids) in chosen.iter_mut().zip(ids.chunks_exact(kind.nodes)) {
+                *chosen = corners.map(|corner| ids[usize::from(corner)]);
+            }
+            self.nodes.rows_of(chosen[..labels.len()].as_flattened(), rows.as_flattened_mut())
+                && ids.iter().all(|id| self.nodes.row(*id).is_some())
+        };
+        if !known {
+            return Ok(false);
+        }
+        if kind.nodes > CORNERS {
+            self.mark_used(ids);
+        }
+        self.nodes.mark_all_used(rows.as_flattened());
+        self.ledger.repeated_nodes += rows.iter().map(|rows| u64::from(has_repeats(rows))).sum::<u64>();
+        self.count_run(kind, labels.len() as u64);
+        let (mut labels, mut rows) = (labels, &*rows);
+        while !labels.is_empty() {
+            let chunk = self.open(shape)?;
+            let step = labels.len().min(chunk.room());
+            chunk.extend(&labels[..step], rows[..step].as_flattened());
+            (labels, rows) = (&labels[step..], &rows[step..]);
+            self.hand_on_full(shape)?;
+        }
+        Ok(true)
+    }
+
     /// Types come in long runs: the ledger hears of a run when it ends.
     #[inline]
-    fn count_one(&mut self, kind: &Arc<ElementType>) {
+    fn count_run(&mut self, kind: &Arc<ElementType>, elements: u64) {
         if self.types.get(self.current).is_none_or(|(known, _)| !Arc::ptr_eq(known, kind)) {
             self.change_type(kind);
         }
-        self.run += 1;
+        self.run += elements;
     }
 
     fn change_type(&mut self, kind: &Arc<ElementType>) {
@@ -195,23 +257,30 @@ impl<'a> ElementSink<'a> {
 
     #[inline(always)]
     fn push(&mut self, label: u64, shape: Shape, rows: &[u32]) -> Result<()> {
-        let slot = &mut self.open[shape.index()];
-        let chunk = match slot {
-            Some(chunk) => chunk,
-            None => {
+        self.open(shape)?.push(label, rows);
+        self.hand_on_full(shape)
+    }
+
+    /// The open chunk of a shape.
+    #[inline(always)]
+    fn open(&mut self, shape: Shape) -> Result<&mut Chunk> {
+        match &mut self.open[shape.index()] {
+            Some(chunk) => Ok(chunk),
+            slot => {
                 let mut chunk = self.chunks.empty()?;
                 chunk.reset(shape, self.origin);
                 self.origin.chunk += 1;
-                slot.insert(chunk)
+                Ok(slot.insert(chunk))
             }
-        };
-        chunk.push(label, rows);
-        if chunk.is_full()
-            && let Some(full) = slot.take()
-        {
-            self.chunks.hand_on(full)?;
         }
-        Ok(())
+    }
+
+    #[inline(always)]
+    fn hand_on_full(&mut self, shape: Shape) -> Result<()> {
+        match self.open[shape.index()].take_if(|chunk| chunk.is_full()) {
+            Some(full) => self.chunks.hand_on(full),
+            None => Ok(()),
+        }
     }
 
     #[cold]

@@ -127,6 +127,39 @@ fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512vl")
 }
 
+/// A loop over numbers that becomes vector code: its `run`, and all that it calls, must be `#[inline(always)]`.
+pub trait Wide {
+    /// What it works out.
+    type Output;
+    /// Runs it.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs a loop, compiled for the widest instructions of the machine.
+#[cfg_attr(target_arch = "x86_64", allow(unsafe_code))]
+#[inline]
+pub fn at_widest<W: Wide>(wide: W) -> W::Output {
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn avx2<W: Wide>(wide: W) -> W::Output {
+        wide.run()
+    }
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512dq,avx512bw,avx512vl")]
+    fn avx512<W: Wide>(wide: W) -> W::Output {
+        wide.run()
+    }
+    match Width::widest().0 {
+        Instructions::Baseline => wide.run(),
+        // SAFETY: a `Width` of these instructions exists only where they were detected.
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx2 => unsafe { avx2(wide) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx512 => unsafe { avx512(wide) },
+    }
+}
+
 /// Makes of a loop over lanes a function for the widest instructions of the machine, and one for a given width.
 macro_rules! at_every_width {
     ($(#[$doc:meta])* $name:ident, $at:ident = $loop:ident($($argument:ident: $type:ty),+)) => {

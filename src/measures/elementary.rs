@@ -32,6 +32,12 @@ pub(super) fn unit(x: f64) -> (f64, f64) {
 /// rest. Unlike square roots and divisions, which share one slow unit of the processor, this is all multiplications.
 #[inline(always)]
 pub(super) fn inverse_root<const K: usize>(x: f64) -> f64 {
+    closer_inverse_root::<K>(x, closer_inverse_root::<K>(x, rough_inverse_root::<K>(x)))
+}
+
+/// x^(-1/K) within a few percent.
+#[inline(always)]
+fn rough_inverse_root<const K: usize>(x: f64) -> f64 {
     // The upper half of the bits; a third of them by a multiplication that all vector units have.
     let upper = x.to_bits() >> 32;
     let (start, part) = match K {
@@ -39,8 +45,7 @@ pub(super) fn inverse_root<const K: usize>(x: f64) -> f64 {
         3 => (0x553e_e918, (upper * 0x5555_5556) >> 32),
         _ => (0x4feb_02e0, upper >> 2),
     };
-    let t = f64::from_bits(start.wrapping_sub(part) << 32);
-    closer_inverse_root::<K>(x, closer_inverse_root::<K>(x, t))
+    f64::from_bits(start.wrapping_sub(part) << 32)
 }
 
 /// With e = 1 - x t^K, x^(-1/K) = t (1-e)^(-1/K), by the first terms of its binomial series.
@@ -51,11 +56,80 @@ fn closer_inverse_root<const K: usize>(x: f64, t: f64) -> f64 {
         3 => x * t * t * t,
         _ => x * (t * t) * (t * t),
     };
-    let part = 1.0 / K as f64;
-    let second = part * (1.0 + part) / 2.0;
-    let third = second * (2.0 + part) / 3.0;
+    let Series { first, second, third } = const { Series::of(K as f64) };
     let e = 1.0 - power;
-    t + t * (e * (part + e * (second + e * third)))
+    t + t * (e * (first + e * (second + e * third)))
+}
+
+/// [`inverse_root`] of four numbers, with K of 2, 4, 4 and 2: the same bits, step by step side by side.
+#[inline(always)]
+pub(super) fn inverse_roots_2442(x: [f64; 4]) -> [f64; 4] {
+    let rough = [
+        rough_inverse_root::<2>(x[0]),
+        rough_inverse_root::<4>(x[1]),
+        rough_inverse_root::<4>(x[2]),
+        rough_inverse_root::<2>(x[3]),
+    ];
+    closer_inverse_roots_2442(x, closer_inverse_roots_2442(x, rough))
+}
+
+#[inline(always)]
+fn closer_inverse_roots_2442(x: [f64; 4], t: [f64; 4]) -> [f64; 4] {
+    const HALF: Series = Series::of(2.0);
+    const QUARTER: Series = Series::of(4.0);
+    const SERIES: [Series; 4] = [HALF, QUARTER, QUARTER, HALF];
+    /// Written out: a loop over four would be turned the wrong way round in the loop over lanes.
+    macro_rules! each {
+        ($k:ident => $value:expr) => {
+            [
+                {
+                    const $k: usize = 0;
+                    $value
+                },
+                {
+                    const $k: usize = 1;
+                    $value
+                },
+                {
+                    const $k: usize = 2;
+                    $value
+                },
+                {
+                    const $k: usize = 3;
+                    $value
+                },
+            ]
+        };
+    }
+    let squares = each!(K => t[K] * t[K]);
+    let powers = [
+        x[0] * t[0] * t[0],
+        x[1] * squares[1] * squares[1],
+        x[2] * squares[2] * squares[2],
+        x[3] * t[3] * t[3],
+    ];
+    let e = each!(K => 1.0 - powers[K]);
+    let sum = each!(K => e[K] * SERIES[K].third);
+    let sum = each!(K => SERIES[K].second + sum[K]);
+    let sum = each!(K => e[K] * sum[K]);
+    let sum = each!(K => SERIES[K].first + sum[K]);
+    let sum = each!(K => e[K] * sum[K]);
+    each!(K => t[K] + t[K] * sum[K])
+}
+
+/// Coefficients of the binomial series of (1-e)^(-1/K).
+struct Series {
+    first: f64,
+    second: f64,
+    third: f64,
+}
+
+impl Series {
+    const fn of(k: f64) -> Self {
+        let first = 1.0 / k;
+        let second = first * (1.0 + first) / 2.0;
+        Self { first, second, third: second * (2.0 + first) / 3.0 }
+    }
 }
 
 /// The angle between two vectors, in [0, π], from the magnitude of their cross product, their dot product and the
@@ -99,24 +173,58 @@ fn small_arc_tangent(t: f64) -> f64 {
 #[inline(always)]
 pub(super) fn cosine_of_two_thirds(u: f64) -> f64 {
     let x = 2.0 * u - 1.0;
-    let mut y = 4.990_811_057_596_218_3e-11;
-    y = y * x - 1.635_825_098_885_818_3e-10;
-    y = y * x + 3.146_175_703_917_731_3e-10;
-    y = y * x - 1.052_665_824_108_632_4e-9;
-    y = y * x + 3.972_853_735_371_566e-9;
-    y = y * x - 1.348_180_209_578_561e-8;
-    y = y * x + 4.583_483_187_568_922e-8;
-    y = y * x - 1.594_650_404_385_395_4e-7;
-    y = y * x + 5.641_598_426_946_4e-7;
-    y = y * x - 2.035_896_711_396_145_3e-6;
-    y = y * x + 7.541_076_906_895_577e-6;
-    y = y * x - 2.891_993_106_141_799_5e-5;
-    y = y * x + 0.000_116_425_453_105_203_61;
-    y = y * x - 0.000_504_124_691_647_182_3;
-    y = y * x + 0.002_466_352_815_080_786_5;
-    y = y * x - 0.015_509_188_436_466_925;
-    y = y * x + 0.247_409_066_322_853_1;
-    y * x + 0.766_044_443_118_977_9
+    // Pairs, fours, eights: one term after another would be a chain of 34 steps, and the processor would wait for it.
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let x8 = x4 * x4;
+    let low = four(
+        [
+            0.766_044_443_118_977_9,
+            0.247_409_066_322_853_1,
+            -0.015_509_188_436_466_925,
+            0.002_466_352_815_080_786_5,
+        ],
+        x,
+        x2,
+    ) + x4
+        * four(
+            [
+                -0.000_504_124_691_647_182_3,
+                0.000_116_425_453_105_203_61,
+                -2.891_993_106_141_799_5e-5,
+                7.541_076_906_895_577e-6,
+            ],
+            x,
+            x2,
+        );
+    let high = four(
+        [
+            -2.035_896_711_396_145_3e-6,
+            5.641_598_426_946_4e-7,
+            -1.594_650_404_385_395_4e-7,
+            4.583_483_187_568_922e-8,
+        ],
+        x,
+        x2,
+    ) + x4
+        * four(
+            [
+                -1.348_180_209_578_561e-8,
+                3.972_853_735_371_566e-9,
+                -1.052_665_824_108_632_4e-9,
+                3.146_175_703_917_731_3e-10,
+            ],
+            x,
+            x2,
+        );
+    let highest = 4.990_811_057_596_218_3e-11 * x - 1.635_825_098_885_818_3e-10;
+    low + x8 * (high + x8 * highest)
+}
+
+/// Four terms of a polynomial in `x`, given `x` squared.
+#[inline(always)]
+fn four(terms: [f64; 4], x: f64, x2: f64) -> f64 {
+    (terms[0] + terms[1] * x) + x2 * (terms[2] + terms[3] * x)
 }
 
 /// A finished score: within [0, 1], and 0 where it is not a number, as that of a degenerate element.
@@ -154,6 +262,20 @@ mod tests {
         }
         assert!(inverse_root::<2>(0.0).is_finite() && inverse_root::<3>(0.0).is_finite());
         assert!(inverse_root::<4>(0.0).is_finite());
+    }
+
+    #[test]
+    fn four_roots_are_the_same_bits_as_one_by_one() {
+        for i in 0..10_000 {
+            let x = [0, 1, 2, 3].map(|k| (f64::from(i) * 0.19 - 950.0 + f64::from(k)).exp2() * 1.37);
+            let one_by_one = [
+                inverse_root::<2>(x[0]),
+                inverse_root::<4>(x[1]),
+                inverse_root::<4>(x[2]),
+                inverse_root::<2>(x[3]),
+            ];
+            assert_eq!(inverse_roots_2442(x), one_by_one);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! M31 to M34: tetrahedra.
 
-use super::elementary::{ROUNDING2, cosine_of_two_thirds, inverse_root, unit};
+use super::elementary::{ROUNDING2, cosine_of_two_thirds, inverse_roots_2442, unit};
 use super::vector::{Vector, choose, choose_vector, cross, dot, edge, larger, reach, smaller, square};
 use super::{COMSOL_TETRAHEDRON, Family};
 
@@ -39,8 +39,67 @@ measures! { Family::Tetrahedron, of 4 corners:
     }
 }
 
-/// What the measures share, in units of about the longest edge.
+/// What the measures are made of, in units of about the longest edge.
 struct Facts {
+    /// 6|V|; 0 where it is within the rounding error of its computation.
+    volume: f64,
+    /// [Σl²]^(-1/2)
+    edges: f64,
+    /// [(ΣAᵢAⱼlᵢⱼ² + 6V maxᵢ Σⱼ Aⱼlᵢⱼ)/ΣA]^(-1/4) with twice the areas.
+    gradient: f64,
+    /// μ^(-1/4), see [`conditioning`].
+    eigenvalue: f64,
+    /// 1/(2RΣA) with twice the areas.
+    radii: f64,
+}
+
+impl Facts {
+    #[inline(always)]
+    fn of(p: &[Vector; 4]) -> Self {
+        let t = Parts::of(p);
+        // A root is a chain of steps that wait for each other: the four are drawn side by side, and what takes longest to
+        // come to is begun first.
+        let ball = t.containment_ball();
+        let surface = t.surface();
+        let radii = ball.below * ball.above * (surface * surface);
+        let eigenvalue = largest_eigenvalue(&t.normals);
+        let gradient = t.gradient();
+        let edges = t.sum_of_squares();
+        let [edges, gradient, eigenvalue, radii] = inverse_roots_2442([edges, gradient, eigenvalue, radii]);
+        Facts { volume: t.volume, edges, gradient, eigenvalue, radii: ball.below * radii }
+    }
+}
+
+#[inline(always)]
+fn volume_over_edges(t: &Facts) -> f64 {
+    20.784_609_690_826_528 * t.volume * cube(t.edges)
+}
+
+#[inline(always)]
+fn gradient(t: &Facts) -> f64 {
+    1.600_976_133_417_754 * t.volume * cube(t.gradient)
+}
+
+/// λ is the largest eigenvalue of Σ AᵢAᵢᵀ/(9V) over the faces' area vectors. With μ that of twice the area vectors and
+/// without the division, M33 = √2 6V / μ^¾.
+#[inline(always)]
+fn conditioning(t: &Facts) -> f64 {
+    std::f64::consts::SQRT_2 * t.volume * cube(t.eigenvalue)
+}
+
+/// r = 3V/ΣA.
+#[inline(always)]
+fn radius_ratio(t: &Facts) -> f64 {
+    6.0 * t.volume * t.radii
+}
+
+#[inline(always)]
+fn cube(x: f64) -> f64 {
+    x * x * x
+}
+
+/// What the facts share, in units of about the longest edge.
+struct Parts {
     /// Squared edges 01, 02, 03, 12, 13, 23.
     squares: [f64; 6],
     /// Twice the area vectors of the faces opposite corners 0 to 3. Those opposite 1, 2 and 3 add up to that
@@ -52,7 +111,7 @@ struct Facts {
     volume: f64,
 }
 
-impl Facts {
+impl Parts {
     #[inline(always)]
     fn of(p: &[Vector; 4]) -> Self {
         let far = larger(larger(reach(&p[0], &p[1]), reach(&p[0], &p[2])), reach(&p[0], &p[3]));
@@ -68,13 +127,65 @@ impl Facts {
         ];
         let (determinant, bound) = edges.determinant();
         let volume = choose(determinant * determinant > bound, determinant.abs(), 0.0);
-        Facts { squares: edges.squares, normals, areas, volume }
+        Parts { squares: edges.squares, normals, areas, volume }
     }
 
     #[inline(always)]
     fn surface(&self) -> f64 {
         let [a, b, c, d] = self.areas;
         (a + b) + (c + d)
+    }
+
+    #[inline(always)]
+    fn sum_of_squares(&self) -> f64 {
+        let [a, b, c, d, e, f] = self.squares;
+        ((a + b) + (c + d)) + (e + f)
+    }
+
+    /// (ΣAᵢAⱼlᵢⱼ² + 6V maxᵢ Σⱼ Aⱼlᵢⱼ)/ΣA with twice the areas.
+    #[inline(always)]
+    fn gradient(&self) -> f64 {
+        let [s01, s02, s03, s12, s13, s23] = self.squares;
+        let [a0, a1, a2, a3] = self.areas;
+        let pairs = ((a0 * a1) * s01 + (a0 * a2) * s02 + (a0 * a3) * s03)
+            + ((a1 * a2) * s12 + (a1 * a3) * s13 + (a2 * a3) * s23);
+        let (l01, l02, l03) = (s01.sqrt(), s02.sqrt(), s03.sqrt());
+        let (l12, l13, l23) = (s12.sqrt(), s13.sqrt(), s23.sqrt());
+        let from0 = a1 * l01 + a2 * l02 + a3 * l03;
+        let from1 = a0 * l01 + a2 * l12 + a3 * l13;
+        let from2 = a0 * l02 + a1 * l12 + a3 * l23;
+        let from3 = a0 * l03 + a1 * l13 + a2 * l23;
+        let most = larger(larger(from0, from1), larger(from2, from3));
+        (pairs + 2.0 * self.volume * most) / (2.0 * self.surface())
+    }
+
+    /// The containment sphere is the largest of the smallest spheres through an edge, a face or all corners whose
+    /// centre lies within that edge, face or tetrahedron. 4R² is kept as a fraction, so that spheres are compared
+    /// without dividing.
+    #[inline(always)]
+    fn containment_ball(&self) -> Ball {
+        let [s01, s02, s03, s12, s13, s23] = self.squares;
+        let [a0, a1, a2, a3] = self.areas;
+        let longest = larger(larger(larger(s01, s02), larger(s03, s12)), larger(s13, s23));
+        let ball = Ball { above: longest, below: 1.0 };
+        let ball = ball.or_face(s12, s13, s23, a0);
+        let ball = ball.or_face(s02, s03, s23, a1);
+        let ball = ball.or_face(s01, s03, s13, a2);
+        let ball = ball.or_face(s01, s02, s12, a3);
+
+        // The circumcentre seen from corner 0 is q/12V; q·nᵢ are its barycentric coordinates.
+        let [n0, n1, n2, n3] = &self.normals;
+        let q = [
+            s01 * n1[0] + s02 * n2[0] + s03 * n3[0],
+            s01 * n1[1] + s02 * n2[1] + s03 * n3[1],
+            s01 * n1[2] + s02 * n2[2] + s03 * n3[2],
+        ];
+        let square_volume = self.volume * self.volume;
+        let inside = (dot(&q, n1) >= 0.0)
+            & (dot(&q, n2) >= 0.0)
+            & (dot(&q, n3) >= 0.0)
+            & (dot(&q, n0) <= 2.0 * square_volume);
+        ball.or(inside, square(&q), square_volume)
     }
 }
 
@@ -116,39 +227,6 @@ impl Edges {
 #[inline(always)]
 pub(super) fn determinant(p: &[Vector; 4], scale: f64) -> (f64, f64) {
     Edges::of(p, scale).determinant()
-}
-
-#[inline(always)]
-fn volume_over_edges(t: &Facts) -> f64 {
-    let [a, b, c, d, e, f] = t.squares;
-    let sum = ((a + b) + (c + d)) + (e + f);
-    let root = inverse_root::<2>(sum);
-    20.784_609_690_826_528 * t.volume * (root * root * root)
-}
-
-#[inline(always)]
-fn gradient(t: &Facts) -> f64 {
-    let [s01, s02, s03, s12, s13, s23] = t.squares;
-    let [a0, a1, a2, a3] = t.areas;
-    let pairs = ((a0 * a1) * s01 + (a0 * a2) * s02 + (a0 * a3) * s03)
-        + ((a1 * a2) * s12 + (a1 * a3) * s13 + (a2 * a3) * s23);
-    let (l01, l02, l03) = (s01.sqrt(), s02.sqrt(), s03.sqrt());
-    let (l12, l13, l23) = (s12.sqrt(), s13.sqrt(), s23.sqrt());
-    let from0 = a1 * l01 + a2 * l02 + a3 * l03;
-    let from1 = a0 * l01 + a2 * l12 + a3 * l13;
-    let from2 = a0 * l02 + a1 * l12 + a3 * l23;
-    let from3 = a0 * l03 + a1 * l13 + a2 * l23;
-    let most = larger(larger(from0, from1), larger(from2, from3));
-    let root = inverse_root::<4>((pairs + 2.0 * t.volume * most) / (2.0 * t.surface()));
-    1.600_976_133_417_754 * t.volume * (root * root * root)
-}
-
-/// λ is the largest eigenvalue of Σ AᵢAᵢᵀ/(9V) over the faces' area vectors. With twice the area vectors and
-/// without the division, M33 = √2 6V / μ^¾.
-#[inline(always)]
-fn conditioning(t: &Facts) -> f64 {
-    let root = inverse_root::<4>(largest_eigenvalue(&t.normals));
-    std::f64::consts::SQRT_2 * t.volume * (root * root * root)
 }
 
 /// The largest eigenvalue of N = Σ n nᵀ over four vectors: mean + 2ρ cos(θ/3), with ρ and θ from the invariants
@@ -200,39 +278,6 @@ fn discriminant([u, v, w]: Vector, [yz, zx, xy]: Vector, [p, q, r]: Vector) -> f
     let h3 = xy * (2.0 * (u * v + r) - p - q) + yz * zx * (v - u);
     let d = u * v * w + u * p + v * q + w * r;
     d * d + (h1 * h1 + h2 * h2 + h3 * h3) + 15.0 * (k1 * k1 + k2 * k2 + k3 * k3)
-}
-
-/// r = 3V/ΣA. The containment sphere is the largest of the smallest spheres through an edge, a face or all
-/// corners whose centre lies within that edge, face or tetrahedron. 4R² is kept as a fraction, so that spheres are
-/// compared without dividing.
-#[inline(always)]
-fn radius_ratio(t: &Facts) -> f64 {
-    let [s01, s02, s03, s12, s13, s23] = t.squares;
-    let [a0, a1, a2, a3] = t.areas;
-    let longest = larger(larger(larger(s01, s02), larger(s03, s12)), larger(s13, s23));
-    let ball = Ball { above: longest, below: 1.0 };
-    let ball = ball.or_face(s12, s13, s23, a0);
-    let ball = ball.or_face(s02, s03, s23, a1);
-    let ball = ball.or_face(s01, s03, s13, a2);
-    let ball = ball.or_face(s01, s02, s12, a3);
-
-    // The circumcentre seen from corner 0 is q/12V; q·nᵢ are its barycentric coordinates.
-    let [n0, n1, n2, n3] = &t.normals;
-    let q = [
-        s01 * n1[0] + s02 * n2[0] + s03 * n3[0],
-        s01 * n1[1] + s02 * n2[1] + s03 * n3[1],
-        s01 * n1[2] + s02 * n2[2] + s03 * n3[2],
-    ];
-    let square_volume = t.volume * t.volume;
-    let inside = (dot(&q, n1) >= 0.0)
-        & (dot(&q, n2) >= 0.0)
-        & (dot(&q, n3) >= 0.0)
-        & (dot(&q, n0) <= 2.0 * square_volume);
-    let ball = ball.or(inside, square(&q), square_volume);
-
-    let surface = t.surface();
-    let root = inverse_root::<2>(ball.below * ball.above * (surface * surface));
-    6.0 * t.volume * (ball.below * root)
 }
 
 /// A ball's 4R² as a fraction.

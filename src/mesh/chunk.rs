@@ -59,6 +59,18 @@ impl Chunk {
         self.rows.extend_from_slice(rows);
     }
 
+    /// Adds elements, as many as there are labels and no more than [`Chunk::room`]: `rows` are the corners of all.
+    pub fn extend(&mut self, labels: &[u64], rows: &[u32]) {
+        debug_assert!(labels.len() <= self.room() && rows.len() == labels.len() * self.shape.corners());
+        self.labels.extend_from_slice(labels);
+        self.rows.extend_from_slice(rows);
+    }
+
+    /// Number of elements that still fit.
+    pub fn room(&self) -> usize {
+        CHUNK - self.labels.len()
+    }
+
     /// Whether no further element fits.
     #[inline]
     pub fn is_full(&self) -> bool {

@@ -85,27 +85,39 @@ impl<T: Pod> ColumnBuilder<T> {
 
     /// Ends filling.
     pub fn finish(mut self) -> Result<Column<T>> {
-        let (budget, taken) = (self.budget.clone(), self.taken);
+        // Room that was not needed was never touched.
+        let unused = ((self.rows.capacity() - self.rows.len()) * size_of::<T>()) as u64;
+        self.budget.give_back(unused.min(self.taken));
+        let (budget, taken) = (self.budget.clone(), self.taken.saturating_sub(unused));
         match self.spilled.take() {
             None => Ok(Column { store: Store::Memory(self.rows), taken, budget }),
             Some(file) => Ok(Column { store: map(file.into_file()?)?, taken, budget }),
         }
     }
 
+    /// Makes room for as many rows in all, if the budget has it and they are in memory: what is not touched costs nothing.
+    pub fn expect(&mut self, rows: usize) {
+        if self.spilled.is_none() && rows > self.rows.capacity() {
+            self.grow(rows);
+        }
+    }
+
     /// Makes room in memory, if the budget has it.
     fn make_room(&mut self, more: usize) -> bool {
         let needed = self.rows.len() + more;
-        if needed <= self.rows.capacity() {
-            return true;
-        }
         // Half as much again: pages that are not touched yet cost nothing, and growing moves no bytes.
-        let capacity = needed.max(self.rows.capacity() + self.rows.capacity() / 2);
+        needed <= self.rows.capacity()
+            || self.grow(needed.max(self.rows.capacity() + self.rows.capacity() / 2))
+    }
+
+    fn grow(&mut self, capacity: usize) -> bool {
         let bytes = ((capacity - self.rows.capacity()) * size_of::<T>()) as u64;
         if !self.budget.take(bytes) {
             return false;
         }
         self.taken += bytes;
         self.rows.reserve_exact(capacity - self.rows.len());
+        ask_for_huge_pages(&mut self.rows);
         true
     }
 }
@@ -130,22 +142,25 @@ impl<T: Pod> Column<T> {
         }
     }
 
-    /// Asks the processor for a row that will be read soon.
+    /// Asks the processor for rows that will be read soon.
     #[inline(always)]
     #[cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "prefetching takes a bare address"))]
-    pub fn prefetch(&self, row: usize) {
+    pub fn prefetch(&self, rows: &[u32]) {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let start = self.rows().as_ptr().wrapping_add(row).cast::<i8>();
-            // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address. A row may lie in two lines.
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(start);
-                _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(size_of::<T>() - 1));
+            let start = self.rows().as_ptr();
+            for row in rows {
+                let row = start.wrapping_add(*row as usize).cast::<i8>();
+                // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address. A row may lie in two lines.
+                unsafe {
+                    _mm_prefetch::<_MM_HINT_T0>(row);
+                    _mm_prefetch::<_MM_HINT_T0>(row.wrapping_add(size_of::<T>() - 1));
+                }
             }
         }
         #[cfg(not(target_arch = "x86_64"))]
-        let _ = row;
+        let _ = rows;
     }
 
     /// The rows, to be changed.
@@ -165,6 +180,26 @@ impl<T: Pod> Column<T> {
 impl<T> Drop for Column<T> {
     fn drop(&mut self) {
         self.budget.give_back(self.taken);
+    }
+}
+
+/// Rows are read in the order of the elements' corners, all over the column: with pages of 4 KiB each look would cost a
+/// search for its page too.
+#[expect(unsafe_code, reason = "advice about memory takes a bare address")]
+fn ask_for_huge_pages<T>(rows: &mut Vec<T>) {
+    const PAGE: usize = 4096;
+    let room = rows.spare_capacity_mut();
+    let (start, bytes) = (room.as_mut_ptr().cast::<u8>(), size_of_val(room));
+    let skip = start.align_offset(PAGE);
+    if bytes.saturating_sub(skip) > 4 << 20 {
+        // SAFETY: whole pages of memory that the vector owns; the advice changes no byte of them.
+        let _ = unsafe {
+            rustix::mm::madvise(
+                start.wrapping_add(skip).cast(),
+                (bytes - skip) / PAGE * PAGE,
+                rustix::mm::Advice::LinuxHugepage,
+            )
+        };
     }
 }
 

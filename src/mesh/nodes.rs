@@ -103,6 +103,11 @@ impl NodesBuilder {
         }
     }
 
+    /// Says how many nodes to expect, as far as the data seen tells. Nothing is lost if it is wrong.
+    pub fn expect(&mut self, nodes: usize) {
+        self.rows.expect(nodes);
+    }
+
     /// Appends nodes. An empty `ids` means that numbers follow the rows, from 0. Of nodes with one number the last wins.
     pub fn extend(&mut self, ids: &[u64], rows: &[[f64; 3]]) -> Result<()> {
         debug_assert!(ids.is_empty() || ids.len() == rows.len());
@@ -249,10 +254,10 @@ impl Nodes {
         self.rows.rows()
     }
 
-    /// Asks the processor for a row of coordinates that will be read soon.
+    /// Asks the processor for rows of coordinates that will be read soon.
     #[inline(always)]
-    pub fn prefetch(&self, row: u32) {
-        self.rows.prefetch(row as usize);
+    pub fn prefetch(&self, rows: &[u32]) {
+        self.rows.prefetch(rows);
     }
 
     /// The row of the node with number `id`.
@@ -271,6 +276,35 @@ impl Nodes {
             }
             Index::Runs(_) | Index::Pairs(_) => self.search(id),
         }
+    }
+
+    /// The rows of the nodes with the numbers `ids`, one for each. Says whether all are known; if not, the rows mean
+    /// nothing.
+    #[inline]
+    pub fn rows_of(&self, ids: &[u64], out: &mut [u32]) -> bool {
+        let mut known = true;
+        let each = out.iter_mut().zip(ids);
+        match &self.index {
+            Index::Dense { first, len } => each.for_each(|(out, id)| {
+                let row = id.wrapping_sub(*first);
+                known &= row < *len;
+                *out = row as u32;
+            }),
+            Index::Table { first, rows } => {
+                let rows = rows.rows();
+                each.for_each(|(out, id)| {
+                    let row = rows.get(id.wrapping_sub(*first) as usize).copied().unwrap_or(0);
+                    known &= row > 0;
+                    *out = row.wrapping_sub(1);
+                });
+            }
+            Index::Runs(_) | Index::Pairs(_) => each.for_each(|(out, id)| {
+                let row = self.search(*id);
+                known &= row.is_some();
+                *out = row.unwrap_or(0);
+            }),
+        }
+        known
     }
 
     /// The row of a number that is not near the others.
@@ -297,6 +331,19 @@ impl Nodes {
         // Most nodes are marked already: looking is far cheaper than writing.
         if word.load(Ordering::Relaxed) & bit == 0 {
             word.fetch_or(bit, Ordering::Relaxed);
+        }
+    }
+
+    /// Notes that elements use the nodes in `rows`.
+    #[inline]
+    pub fn mark_all_used(&self, rows: &[u32]) {
+        for rows in rows.chunks(4) {
+            let new = rows.iter().fold(0, |new, row| {
+                new | !(self.used[*row as usize / 64].load(Ordering::Relaxed) >> (row % 64))
+            });
+            if new & 1 != 0 {
+                rows.iter().for_each(|row| self.mark_used(*row));
+            }
         }
     }
 

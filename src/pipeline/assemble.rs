@@ -164,8 +164,8 @@ fn measure_summary(
         min_element: extremes.min_label,
         mean: moments.mean[value].clamp(extremes.min, extremes.max),
         sd: moments.sd(value),
-        quantiles: bins.spread.quantiles(further_quantiles, extremes.min, extremes.max),
-        histogram: bins.histogram.counts().to_vec(),
+        quantiles: bins.scores.quantiles(further_quantiles, extremes.min, extremes.max),
+        histogram: bins.scores.bins().to_vec(),
         below: bins.below.iter().map(|(limit, count)| (limit.to_string(), *count)).collect(),
     }
 }

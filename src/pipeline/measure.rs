@@ -3,11 +3,12 @@
 //! Doubles go into [`ShapeStatistics`], which the merge stage puts in order; whole numbers go into the worker's own
 //! [`Bins`], which may be added in any order.
 
+use crate::measures::batch::{Wide, at_widest};
 use crate::measures::{
     self, Corner, Family, Geometry, LANES, Lanes, MOST_MEASURES, QuadrilateralFlaws, Subject,
 };
 use crate::mesh::{CHUNK, Chunk, Nodes, Origin, Shape};
-use crate::statistics::{Histogram, MOST, Moments, Spread, sum};
+use crate::statistics::{Distribution, MOST, Moments, Spread, sum};
 use crate::summary::Judgement;
 
 /// The most subjects of a shape: triangular and quadrilateral faces.
@@ -48,9 +49,15 @@ pub(super) struct Hits {
 }
 
 impl Hits {
-    fn add(&mut self, label: u64) {
-        self.count += 1;
-        self.first.get_or_insert(label);
+    /// Adds the elements whose flag is set.
+    #[inline(always)]
+    fn add(&mut self, flags: &[bool], labels: &[u64]) {
+        let more = count(flags);
+        if more > 0 {
+            self.count += more;
+            let first = flags.iter().position(|flag| *flag).and_then(|lane| labels.get(lane));
+            self.first = self.first.or(first.copied());
+        }
     }
 
     fn merge(&mut self, other: &Self) {
@@ -103,8 +110,7 @@ pub(super) struct ShapeBins {
 /// Bins of one measure.
 #[derive(Debug)]
 pub(super) struct MeasureBins {
-    pub histogram: Histogram,
-    pub spread: Spread,
+    pub scores: Distribution,
     /// Number of values under a threshold, by threshold.
     pub below: Vec<(f64, u64)>,
 }
@@ -124,8 +130,7 @@ impl Bins {
         self.shapes[shape.index()].get_or_insert_with(|| {
             let of = |subject: &Subject| {
                 let bins = |code| MeasureBins {
-                    histogram: Histogram::default(),
-                    spread: Spread::of_unit(),
+                    scores: Distribution::default(),
                     below: self
                         .judgement
                         .thresholds(code, shape)
@@ -154,8 +159,7 @@ impl Bins {
 impl ShapeBins {
     fn merge(&mut self, other: &Self) {
         for (mine, theirs) in self.measures.iter_mut().flatten().zip(other.measures.iter().flatten()) {
-            mine.histogram.merge(&theirs.histogram);
-            mine.spread.merge(&theirs.spread);
+            mine.scores.merge(&theirs.scores);
             mine.below.iter_mut().zip(&theirs.below).for_each(|(mine, theirs)| mine.1 += theirs.1);
         }
         self.size.merge(&other.size);
@@ -193,11 +197,12 @@ pub(super) fn measure(
     let bins = bins.shape_mut(shape);
     let mut found = ShapeStatistics { count: chunk.len() as u64, ..Default::default() };
     let position = position(chunk.origin());
-    let blocks = chunk.rows().chunks(LANES * shape.corners()).zip(chunk.labels().chunks(LANES));
+    let block = LANES * shape.corners();
+    let blocks = chunk.rows().chunks(block).zip(chunk.labels().chunks(LANES));
     for (number, (rows, labels)) in blocks.enumerate() {
         // Meshes are numbered less well than one hopes: without this a third of the time goes by waiting for nodes.
-        let next = chunk.rows().iter().skip((number + 1) * LANES * shape.corners());
-        next.take(LANES * shape.corners()).for_each(|row| nodes.prefetch(*row));
+        let next = chunk.rows().get((number + 1) * block..).unwrap_or_default();
+        nodes.prefetch(&next[..next.len().min(block)]);
         gather(rows, nodes.rows(), shape.corners(), &mut work.corners);
         let first = position + (number * LANES) as u64;
         measure_elements(shape, labels, signed, first, work, bins, &mut found);
@@ -220,14 +225,25 @@ fn position(origin: Origin) -> u64 {
 
 /// Puts the corners of a block of elements side by side. Lanes without an element keep what they had.
 fn gather(rows: &[u32], points: &[[f64; 3]], corners: usize, out: &mut [Corner; Shape::MAX_CORNERS]) {
-    for (lane, rows) in rows.chunks_exact(corners).enumerate() {
-        for (row, corner) in rows.iter().zip(out.iter_mut()) {
-            let point = &points[*row as usize];
-            corner[0][lane] = point[0];
-            corner[1][lane] = point[1];
-            corner[2][lane] = point[2];
-        }
+    /// One number of corners after another, so that each has loops of known length.
+    macro_rules! with_corners {
+        ($($count:literal),*) => {
+            match corners {
+                $($count => {
+                    for (lane, rows) in rows.as_chunks::<$count>().0.iter().take(LANES).enumerate() {
+                        for (row, corner) in rows.iter().zip(out.iter_mut()) {
+                            let point = &points[*row as usize];
+                            corner[0][lane] = point[0];
+                            corner[1][lane] = point[1];
+                            corner[2][lane] = point[2];
+                        }
+                    }
+                })*
+                _ => unreachable!("no shape has {corners} corners"),
+            }
+        };
     }
+    with_corners!(3, 4, 5, 6, 8);
 }
 
 /// Sizes, orientation and degeneracy of whole elements.
@@ -240,26 +256,57 @@ fn measure_elements(
     bins: &mut ShapeBins,
     found: &mut ShapeStatistics,
 ) {
-    let n = labels.len();
-    let geometry = &mut work.geometry;
-    measures::geometry(shape, &work.corners[..shape.corners()], geometry);
-    geometry.extent[..n].iter_mut().for_each(|extent| *extent = extent.abs());
-    found.extent += sum(&geometry.extent[..n]);
-    found.size.merge(&Moments::of(&[&geometry.size[..n]], first));
-    geometry.size[..n].iter().for_each(|size| bins.size.record(*size));
-    let shortest = geometry.shortest[..n].iter().copied().fold(f64::INFINITY, f64::min);
-    let longest = geometry.longest[..n].iter().copied().fold(0.0, f64::max);
-    let edges = found.edges.get_or_insert([shortest, longest]);
-    *edges = [edges[0].min(shortest), edges[1].max(longest)];
-    for (lane, label) in labels.iter().enumerate() {
-        if geometry.degenerate[lane] {
-            found.degenerate.add(*label);
-        } else if signed && geometry.sign[lane] > 0.0 {
-            found.positive.add(*label);
-        } else if signed && geometry.sign[lane] < 0.0 {
-            found.negative.add(*label);
+    measures::geometry(shape, &work.corners[..shape.corners()], &mut work.geometry);
+    at_widest(TakeElements { labels, signed, first, geometry: &mut work.geometry, bins, found });
+}
+
+/// Takes the geometry of one block into bins and statistics.
+struct TakeElements<'a> {
+    labels: &'a [u64],
+    signed: bool,
+    first: u64,
+    geometry: &'a mut Geometry,
+    bins: &'a mut ShapeBins,
+    found: &'a mut ShapeStatistics,
+}
+
+impl Wide for TakeElements<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { labels, signed, first, geometry, bins, found } = self;
+        let n = labels.len();
+        geometry.extent[..n].iter_mut().for_each(|extent| *extent = extent.abs());
+        found.extent += sum(&geometry.extent[..n]);
+        found.size.extend(&[&geometry.size[..n]], first);
+        bins.size.record(&geometry.size[..n]);
+        let edges = found.edges.get_or_insert([f64::INFINITY, 0.0]);
+        *edges = [least(edges[0], &geometry.shortest[..n]), most(edges[1], &geometry.longest[..n])];
+        found.degenerate.add(&geometry.degenerate[..n], labels);
+        if signed {
+            let (mut positive, mut negative) = ([false; LANES], [false; LANES]);
+            for lane in 0..LANES {
+                let (sign, sound) = (geometry.sign[lane], !geometry.degenerate[lane]);
+                positive[lane] = sound & (sign > 0.0);
+                negative[lane] = sound & (sign < 0.0);
+            }
+            found.positive.add(&positive[..n], labels);
+            found.negative.add(&negative[..n], labels);
         }
     }
+}
+
+/// The smallest of all.
+#[inline(always)]
+fn least(first: f64, others: &[f64]) -> f64 {
+    others.iter().fold(first, |a, b| if *b < a { *b } else { a })
+}
+
+/// The largest of all.
+#[inline(always)]
+fn most(first: f64, others: &[f64]) -> f64 {
+    others.iter().fold(first, |a, b| if *b > a { *b } else { a })
 }
 
 /// The measures of a subject: of the elements themselves or of each of their faces.
@@ -297,34 +344,63 @@ fn measure_subject(
             let element = [0, 1, 2, 3].map(|c| &corners[c]);
             measures::tetrahedra(element, scores.first_chunk_mut().expect("four of five rows"));
             record(scores, n, first, bins, moments);
-            found.ordered += (0..n).filter(|lane| in_order(scores, *lane)).count() as u64;
+            found.ordered += at_widest(InOrder(&scores[..4], n));
         }
     }
 }
 
-/// Whether a tetrahedron's measures stand in the order that the report found in about nine of ten:
+/// How many of the first so many tetrahedra have their measures in the order that the report found in about nine of ten:
 /// M32 >= M34 >= M31 >= M33.
-fn in_order(scores: &[Lanes], lane: usize) -> bool {
-    let [m31, m32, m33, m34] = [0, 1, 2, 3].map(|m| scores[m][lane]);
-    m32 >= m34 && m34 >= m31 && m31 >= m33
+struct InOrder<'a>(&'a [Lanes], usize);
+
+impl Wide for InOrder<'_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn run(self) -> u64 {
+        let [m31, m32, m33, m34] = [0, 1, 2, 3].map(|m| &self.0[m][..self.1]);
+        let mut ordered = 0;
+        for lane in 0..self.1 {
+            let in_order = (m32[lane] >= m34[lane]) & (m34[lane] >= m31[lane]) & (m31[lane] >= m33[lane]);
+            ordered += u64::from(in_order);
+        }
+        ordered
+    }
 }
 
+#[inline(always)]
 fn count(flags: &[bool]) -> u64 {
-    flags.iter().map(|flag| u64::from(*flag)).sum()
+    // A byte holds the count of a block.
+    const { assert!(LANES < 256) };
+    flags.iter().fold(0u8, |count, flag| count + u8::from(*flag)).into()
 }
 
 /// Takes the scores of one block into bins and moments.
 fn record(scores: &[Lanes], n: usize, first: u64, bins: &mut [MeasureBins], moments: &mut Moments) {
-    let mut columns: [&[f64]; MOST] = [&[]; MOST];
-    for ((column, row), bins) in columns.iter_mut().zip(scores).zip(bins.iter_mut()) {
-        *column = &row[..n];
-        for score in *column {
-            bins.histogram.record(*score);
-            bins.spread.record(*score);
+    at_widest(Record { scores, n, first, bins, moments });
+}
+
+struct Record<'a> {
+    scores: &'a [Lanes],
+    n: usize,
+    first: u64,
+    bins: &'a mut [MeasureBins],
+    moments: &'a mut Moments,
+}
+
+impl Wide for Record<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let mut columns: [&[f64]; MOST] = [&[]; MOST];
+        for ((column, row), bins) in columns.iter_mut().zip(self.scores).zip(self.bins.iter_mut()) {
+            *column = &row[..self.n];
+            bins.scores.record(column);
+            for (limit, count) in &mut bins.below {
+                *count += column.iter().map(|score| u64::from(*score < *limit)).sum::<u64>();
+            }
         }
-        for (limit, count) in &mut bins.below {
-            *count += column.iter().filter(|score| **score < *limit).count() as u64;
-        }
+        self.moments.extend(&columns[..self.bins.len()], self.first);
     }
-    moments.merge(&Moments::of(&columns[..bins.len()], first));
 }

@@ -38,7 +38,7 @@ pub(super) fn read_nodes(
         }
         drop((empty_in, full_out));
         // It takes its ends of the channels along: once it has met an error, nobody waits for a batch.
-        append(full_in, empty_out, &mut builder, progress)
+        append(pieces.len(), full_in, empty_out, &mut builder, progress)
     })?;
     builder.finish()
 }
@@ -77,6 +77,7 @@ impl Drop for SendsPanic {
 
 /// Appends batches in the order of their pieces; the first piece in the file that fails gives the error.
 fn append(
+    pieces: usize,
     full: Receiver<Decoded>,
     empty: Sender<NodeBatch>,
     builder: &mut NodesBuilder,
@@ -90,6 +91,9 @@ fn append(
         waiting.insert(number, decoded);
         while let Some(decoded) = waiting.remove(&next) {
             let batch = decoded?;
+            if next == 0 {
+                builder.expect(batch.rows().len().saturating_mul(pieces));
+            }
             builder.extend(batch.ids(), batch.rows())?;
             progress.done(0);
             next += 1;

@@ -4,12 +4,12 @@
 //! its own. Means, deviations and co-moments are doubles, whose last bits depend on the order: they are merged in the
 //! order of the file, along a tree that does not depend on threads.
 
-mod histogram;
+mod distribution;
 mod moments;
 mod spread;
 mod tree;
 
-pub use histogram::{BINS, Histogram};
+pub use distribution::{BINS, Distribution};
 pub use moments::{Extremes, MOST, Moments, sum};
 pub use spread::{QUANTILES, Spread};
 pub use tree::Tree;

@@ -28,20 +28,23 @@ impl Extremes {
     pub const NONE: Extremes =
         Extremes { min: f64::INFINITY, min_at: u64::MAX, min_label: 0, max: f64::NEG_INFINITY };
 
-    /// Of a block of values that stand at `first`, `first + 1` and so on.
-    pub fn of(values: &[f64], first: u64) -> Self {
-        let (mut min, mut max) = ([f64::INFINITY; STRIDE], [f64::NEG_INFINITY; STRIDE]);
+    /// Takes in a block of values that stand at `first`, `first + 1` and so on.
+    #[inline(always)]
+    pub fn extend(&mut self, values: &[f64], first: u64) {
         let (blocks, rest) = values.as_chunks::<STRIDE>();
+        let (mut min, mut max) = ([f64::INFINITY; STRIDE], [f64::NEG_INFINITY; STRIDE]);
         for block in blocks {
-            for lane in 0..STRIDE {
-                min[lane] = if block[lane] < min[lane] { block[lane] } else { min[lane] };
-                max[lane] = if block[lane] > max[lane] { block[lane] } else { max[lane] };
-            }
+            min = by_lane(min, *block, |a, b| if b < a { b } else { a });
+            max = by_lane(max, *block, |a, b| if b > a { b } else { a });
         }
         let min = min.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
         let max = max.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
-        let place = values.iter().position(|&v| v == min).unwrap_or(0);
-        Self { min, min_at: first + place as u64, min_label: 0, max }
+        // Where it stands is looked up only where it counts.
+        if min <= self.min {
+            let place = values.iter().position(|&v| v == min).unwrap_or(0);
+            self.merge(&Self { min, min_at: first + place as u64, min_label: 0, max });
+        }
+        self.max = self.max.max(max);
     }
 
     /// Takes in others. Of equal minima the one with the smaller position stays.
@@ -86,25 +89,28 @@ impl Default for Moments {
 }
 
 impl Moments {
-    /// Of a block: `columns[value][observation]`, all of one length. Observation k stands at position `first + k`.
-    pub fn of(columns: &[&[f64]], first: u64) -> Self {
-        let mut moments = Self { count: columns.first().map_or(0, |c| c.len() as u64), ..Self::default() };
-        if moments.count == 0 {
-            return moments;
+    /// Takes in a block: `columns[value][observation]`, all of one length. Observation k stands at position `first + k`,
+    /// after all that was taken in before.
+    #[inline(always)]
+    pub fn extend(&mut self, columns: &[&[f64]], first: u64) {
+        let mut block = Self { count: columns.first().map_or(0, |c| c.len() as u64), ..Self::default() };
+        if block.count == 0 {
+            return;
         }
         for (i, column) in columns.iter().enumerate() {
-            moments.mean[i] = sum(column) / moments.count as f64;
-            moments.deviations[i] = sum_of_products(column, moments.mean[i], column, moments.mean[i]);
+            block.mean[i] = sum(column) / block.count as f64;
+            block.deviations[i] = sum_of_products(column, block.mean[i], column, block.mean[i]);
             for (j, other) in columns[..i].iter().enumerate() {
-                moments.co_deviations[pair(j, i)] =
-                    sum_of_products(column, moments.mean[i], other, moments.mean[j]);
+                block.co_deviations[pair(j, i)] =
+                    sum_of_products(column, block.mean[i], other, block.mean[j]);
             }
-            moments.extremes[i] = Extremes::of(column, first);
+            self.extremes[i].extend(column, first);
         }
-        moments
+        self.merge(&block);
     }
 
     /// Takes in others, whose observations come after these.
+    #[inline(always)]
     pub fn merge(&mut self, other: &Self) {
         for (mine, theirs) in self.extremes.iter_mut().zip(&other.extremes) {
             mine.merge(theirs);
@@ -154,37 +160,59 @@ impl Moments {
 }
 
 /// A sum in a fixed order.
+#[inline(always)]
 pub fn sum(values: &[f64]) -> f64 {
-    let mut sums = [0.0; STRIDE];
     let (blocks, rest) = values.as_chunks::<STRIDE>();
+    let mut sums = [0.0; STRIDE];
     for block in blocks {
-        for lane in 0..STRIDE {
-            sums[lane] += block[lane];
-        }
+        sums = by_lane(sums, *block, |sum, x| sum + x);
     }
     fold(sums) + rest.iter().sum::<f64>()
 }
 
 /// Sum of products of deviations in a fixed order.
+#[inline(always)]
 fn sum_of_products(x: &[f64], mean_x: f64, y: &[f64], mean_y: f64) -> f64 {
-    let mut sums = [0.0; STRIDE];
     let ((x_blocks, x_rest), (y_blocks, y_rest)) = (x.as_chunks::<STRIDE>(), y.as_chunks::<STRIDE>());
+    let mut sums = [0.0; STRIDE];
     for (x, y) in x_blocks.iter().zip(y_blocks) {
-        for lane in 0..STRIDE {
-            sums[lane] += (x[lane] - mean_x) * (y[lane] - mean_y);
-        }
+        let products = by_lane(*x, *y, |x, y| (x - mean_x) * (y - mean_y));
+        sums = by_lane(sums, products, |sum, product| sum + product);
     }
     let rest = x_rest.iter().zip(y_rest).map(|(x, y)| (x - mean_x) * (y - mean_y));
     fold(sums) + rest.sum::<f64>()
 }
 
+#[inline(always)]
 fn fold(s: [f64; STRIDE]) -> f64 {
     ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
+}
+
+/// Combines two rows number by number. Rows that are passed as values stay in registers, one row in one register where it
+/// is wide enough; loops over places of two slices would be turned the other way round.
+#[inline(always)]
+fn by_lane(a: [f64; STRIDE], b: [f64; STRIDE], combine: impl Fn(f64, f64) -> f64) -> [f64; STRIDE] {
+    [
+        combine(a[0], b[0]),
+        combine(a[1], b[1]),
+        combine(a[2], b[2]),
+        combine(a[3], b[3]),
+        combine(a[4], b[4]),
+        combine(a[5], b[5]),
+        combine(a[6], b[6]),
+        combine(a[7], b[7]),
+    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of(columns: &[&[f64]], first: u64) -> Moments {
+        let mut moments = Moments::default();
+        moments.extend(columns, first);
+        moments
+    }
 
     /// Plain two-pass statistics, the other way round.
     fn plain(x: &[f64]) -> (f64, f64) {
@@ -210,7 +238,7 @@ mod tests {
             let mut all = Moments::default();
             for k in (0..1000).step_by(step) {
                 let end = (k + step).min(1000);
-                all.merge(&Moments::of(&[&x[k..end], &y[k..end], &z[k..end]], k as u64));
+                all.merge(&of(&[&x[k..end], &y[k..end], &z[k..end]], k as u64));
             }
             for (i, column) in [&x, &y, &z].into_iter().enumerate() {
                 let (mean, sd) = plain(column);
@@ -226,16 +254,16 @@ mod tests {
 
     #[test]
     fn of_equal_minima_the_first_stays() {
-        let mut all = Moments::of(&[&[3.0, 1.0, 1.0]], 10);
-        all.merge(&Moments::of(&[&[1.0, 2.0]], 13));
+        let mut all = of(&[&[3.0, 1.0, 1.0]], 10);
+        all.merge(&of(&[&[1.0, 2.0]], 13));
         assert_eq!((all.extremes[0].min, all.extremes[0].min_at), (1.0, 11));
-        let mut late = Moments::of(&[&[1.0]], 20);
-        late.merge(&Moments::of(&[&[1.0]], 5));
+        let mut late = of(&[&[1.0]], 20);
+        late.merge(&of(&[&[1.0]], 5));
         assert_eq!(late.extremes[0].min_at, 5);
     }
 
     #[test]
     fn what_does_not_vary_has_no_correlation() {
-        assert_eq!(Moments::of(&[&[1.0, 1.0], &[1.0, 2.0]], 0).correlation(0, 1), None);
+        assert_eq!(of(&[&[1.0, 1.0], &[1.0, 2.0]], 0).correlation(0, 1), None);
     }
 }

@@ -17,21 +17,72 @@ const SHIFT: u32 = 52 - CELL_BITS;
 /// Ticks of the HDR histogram at the upper end of the range. Twenty bits under the end and every cell still has one.
 const TOP_TICKS: u64 = 1 << 40;
 
+/// How a range (0, `top`] is divided into cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cells {
+    /// Bits of the first cell, which holds 0 and whatever is smaller than the range.
+    base: u64,
+    /// A power of two that no value exceeds.
+    top: f64,
+}
+
+impl Cells {
+    /// For values of [0, 1].
+    pub(super) fn of_unit() -> Self {
+        Self::new(1.0, 30)
+    }
+
+    fn new(top: f64, octaves: i32) -> Self {
+        let lowest = (top * 2f64.powi(-octaves)).max(f64::MIN_POSITIVE);
+        Self { base: (lowest.to_bits() >> SHIFT) - 1, top }
+    }
+
+    /// Number of cells.
+    pub(super) fn count(&self) -> usize {
+        ((self.top.to_bits() >> SHIFT) - self.base + 1) as usize
+    }
+
+    /// The cell of a value.
+    #[inline(always)]
+    pub(super) fn of(&self, value: f64) -> u32 {
+        let least = f64::from_bits(self.base << SHIFT);
+        let value = if value > least { value } else { least };
+        let value = if value < self.top { value } else { self.top };
+        ((value.to_bits() >> SHIFT) - self.base) as u32
+    }
+
+    /// Smallest value of a cell.
+    fn low(&self, cell: usize) -> f64 {
+        f64::from_bits((self.base + cell as u64) << SHIFT)
+    }
+
+    /// Counts values by whatever `place` says. The places of many are worked out side by side, then counted one by one.
+    #[inline(always)]
+    pub(super) fn count_by(&self, values: &[f64], counts: &mut [u64], place: impl Fn(f64) -> u32) {
+        const STEP: usize = 64;
+        let mut places = [0; STEP];
+        for values in values.chunks(STEP) {
+            for (at, value) in places.iter_mut().zip(values) {
+                *at = place(*value);
+            }
+            for at in &places[..values.len()] {
+                counts[*at as usize] += 1;
+            }
+        }
+    }
+}
+
 /// Counts of values in (0, `top`], by cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
-    /// Cell of the smallest value that is told from 0.
-    base: u64,
-    /// Count by cell; the first holds 0 and whatever is smaller than the range.
-    cells: Vec<u64>,
-    /// A power of two that no value exceeds.
-    top: f64,
+    cells: Cells,
+    counts: Vec<u64>,
 }
 
 impl Spread {
     /// For values of [0, 1].
     pub fn of_unit() -> Self {
-        Self::new(1.0, 30)
+        Self::new(Cells::of_unit())
     }
 
     /// For values up to `largest`, over 40 powers of two.
@@ -39,52 +90,49 @@ impl Spread {
         let largest = if largest.is_normal() { largest.min(1e300) } else { 1.0 };
         // The next power of two: the exponent of the double, one up.
         let top = f64::from_bits((largest.to_bits() >> 52) << 52) * 2.0;
-        Self::new(top, 40)
+        Self::new(Cells::new(top, 40))
     }
 
-    fn new(top: f64, octaves: i32) -> Self {
-        let lowest = (top * 2f64.powi(-octaves)).max(f64::MIN_POSITIVE);
-        let base = lowest.to_bits() >> SHIFT;
-        let cells = ((top.to_bits() >> SHIFT) - base + 2) as usize;
-        Self { base, cells: vec![0; cells], top }
+    fn new(cells: Cells) -> Self {
+        Self { cells, counts: vec![0; cells.count()] }
     }
 
-    /// Counts a value of [0, top].
-    #[inline]
-    pub fn record(&mut self, value: f64) {
-        let cell = (value.to_bits() >> SHIFT).saturating_sub(self.base - 1) as usize;
-        let cell = cell.min(self.cells.len() - 1);
-        self.cells[cell] += 1;
+    /// Counts values of [0, top].
+    #[inline(always)]
+    pub fn record(&mut self, values: &[f64]) {
+        let cells = self.cells;
+        cells.count_by(values, &mut self.counts, |value| cells.of(value));
+    }
+
+    /// Adds counts of the cells from `first` on.
+    pub(super) fn add(&mut self, first: usize, counts: &[u64]) {
+        for (mine, theirs) in self.counts[first..].iter_mut().zip(counts) {
+            *mine += theirs;
+        }
     }
 
     /// Adds the counts of another, made with the same range.
     pub fn merge(&mut self, other: &Self) {
-        debug_assert!(self.base == other.base && self.cells.len() == other.cells.len());
-        for (mine, theirs) in self.cells.iter_mut().zip(&other.cells) {
-            *mine += theirs;
-        }
+        debug_assert!(self.cells == other.cells);
+        self.add(0, &other.counts);
     }
 
     /// Quantiles by key, within [min, max], the true extremes: those of [`QUANTILES`] and of further probabilities.
     pub fn quantiles(&self, further: &[f64], min: f64, max: f64) -> BTreeMap<String, f64> {
         let mut histogram = hdrhistogram::Histogram::<u64>::new_with_bounds(1, 2 * TOP_TICKS, 3)
             .expect("the bounds are in order and three digits are allowed");
-        for (cell, &count) in self.cells.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let ticks = if cell == 0 { 0 } else { (self.low(cell) / self.top * TOP_TICKS as f64) as u64 };
+        for (cell, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let ticks =
+                if cell == 0 { 0 } else { (self.cells.low(cell) / self.cells.top * TOP_TICKS as f64) as u64 };
             histogram.record_n(ticks, count).expect("no value exceeds the range");
         }
         let read = |probability: f64| {
             let ticks = histogram.median_equivalent(histogram.value_at_quantile(probability));
-            (ticks as f64 / TOP_TICKS as f64 * self.top).clamp(min, max)
+            (ticks as f64 / TOP_TICKS as f64 * self.cells.top).clamp(min, max)
         };
         let always = QUANTILES.iter().map(|(key, probability)| ((*key).to_owned(), *probability));
         let asked = further.iter().map(|probability| (probability.to_string(), *probability));
         always.chain(asked).map(|(key, probability)| (key, read(probability))).collect()
-    }
-
-    /// Smallest value of a cell.
-    fn low(&self, cell: usize) -> f64 {
-        f64::from_bits((self.base - 1 + cell as u64) << SHIFT)
     }
 }
 
@@ -97,7 +145,7 @@ mod tests {
         for scale in [1.0, 1e-9, 1e9] {
             let mut values: Vec<f64> = (1..=100_000).map(|k| scale * (f64::from(k) / 1e5).powi(2)).collect();
             let mut spread = if scale == 1.0 { Spread::of_unit() } else { Spread::up_to(scale) };
-            values.iter().for_each(|&v| spread.record(v));
+            spread.record(&values);
             values.sort_by(f64::total_cmp);
             let found = spread.quantiles(&[], values[0], values[values.len() - 1]);
             for (key, probability) in QUANTILES {
@@ -110,10 +158,10 @@ mod tests {
     #[test]
     fn zero_and_one_are_themselves() {
         let mut spread = Spread::of_unit();
-        spread.record(0.0);
+        spread.record(&[0.0]);
         assert_eq!(spread.quantiles(&[], 0.0, 0.0)["0.5"], 0.0);
         let mut spread = Spread::of_unit();
-        spread.record(1.0);
+        spread.record(&[1.0]);
         assert_eq!(spread.quantiles(&[], 1.0, 1.0)["0.5"], 1.0);
     }
 
@@ -121,8 +169,8 @@ mod tests {
     fn a_range_of_nothing_or_of_the_largest_doubles_still_counts() {
         for largest in [0.0, f64::MIN_POSITIVE, 5e-324, f64::MAX, 1e-300] {
             let mut spread = Spread::up_to(largest);
-            spread.record(0.0);
-            spread.record(largest);
+            spread.record(&[0.0]);
+            spread.record(&[largest]);
             assert!(spread.quantiles(&[], 0.0, largest)["0.95"] <= largest);
         }
     }

@@ -9,7 +9,7 @@ use super::words::Binary;
 use super::{Version, types};
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
-use crate::formats::{ElementLayout, ElementSink, Outline, PIECE_BYTES, Piece};
+use crate::formats::{BLOCK, ElementLayout, ElementSink, Outline, PIECE_BYTES, Piece};
 use crate::input::{Source, Spot};
 use crate::mesh::ElementType;
 
@@ -186,16 +186,27 @@ impl Block {
     ) -> Result<()> {
         let skip = WORD * (1 + self.tags);
         let width = skip + WORD * NODES;
-        for (k, record) in records.chunks_exact(width).enumerate() {
-            out.at = Spot::Binary(at + (k * width) as u64);
-            let label = binary.tag::<WORD>(record, 0)?;
-            let mut ids = [0; NODES];
-            binary.tags::<WORD>(&record[skip..], &mut ids)?;
-            out.element(label, self.kind, &ids)?;
+        let (mut labels, mut ids) = ([0; BLOCK], [[0; NODES]; BLOCK]);
+        for (number, block) in records.chunks(BLOCK * width).enumerate() {
+            let count = block.len() / width;
+            let mut good = true;
+            for (record, (label, ids)) in block.chunks_exact(width).zip(labels.iter_mut().zip(&mut ids)) {
+                let (head, nodes) = record.split_at(skip);
+                *label = binary.word::<WORD>(head);
+                good &= *label <= binary.most;
+                for (id, raw) in ids.iter_mut().zip(nodes.as_chunks::<WORD>().0) {
+                    *id = binary.word::<WORD>(raw);
+                    good &= *id <= binary.most;
+                }
+            }
+            if !good || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())? {
+                self.decode_any::<WORD>(binary, at + (number * BLOCK * width) as u64, block, out)?;
+            }
         }
         Ok(())
     }
 
+    /// Record by record: elements with many nodes, and blocks with an error in them, which this finds.
     fn decode_any<const WORD: usize>(
         &self,
         binary: Binary,

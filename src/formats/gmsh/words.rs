@@ -18,7 +18,7 @@ pub(super) struct Binary {
 impl Binary {
     /// The word at the start of `bytes`.
     #[inline]
-    fn word<const WORD: usize>(self, bytes: &[u8]) -> u64 {
+    pub(super) fn word<const WORD: usize>(self, bytes: &[u8]) -> u64 {
         if WORD == 4 { self.endian.u32(bytes).into() } else { self.endian.u64(bytes) }
     }
 

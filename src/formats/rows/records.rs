@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::binary::{Endian, cut_records};
-use crate::formats::{ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, Piece};
-use crate::input::{Source, Spot};
+use crate::formats::{BLOCK, ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, Piece};
+use crate::input::{Source, Spot, Window};
 use crate::mesh::ElementType;
 
 /// How numbers are stored.
@@ -33,8 +33,9 @@ impl Words {
         if self.real == 4 { self.endian.f32(bytes).into() } else { self.endian.f64(bytes) }
     }
 
+    /// The numbers of a record's nodes; says whether none is negative.
     #[inline]
-    fn ids<const WORD: usize>(self, record: &[u8], ids: &mut [u64]) -> Result<()> {
+    fn ids<const WORD: usize>(self, record: &[u8], ids: &mut [u64]) -> bool {
         let (words, _) = record.as_chunks::<WORD>();
         let mut all = 0;
         let endian = self.endian;
@@ -42,10 +43,7 @@ impl Words {
             *id = if WORD == 4 { endian.u32(word).into() } else { endian.u64(word) };
             all |= *id;
         }
-        if all >> (8 * WORD - 1) != 0 {
-            return Err(negative(ids, WORD));
-        }
-        Ok(())
+        all >> (8 * WORD - 1) == 0
     }
 }
 
@@ -130,29 +128,55 @@ impl ElementRecords {
     /// The numbers of nodes that nearly all meshes are made of have a loop of their own.
     fn decode_words<const WORD: usize>(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
         match self.kind.nodes {
-            3 => self.decode_ids::<WORD, _>(span, [0; 3], out),
-            4 => self.decode_ids::<WORD, _>(span, [0; 4], out),
-            5 => self.decode_ids::<WORD, _>(span, [0; 5], out),
-            6 => self.decode_ids::<WORD, _>(span, [0; 6], out),
-            8 => self.decode_ids::<WORD, _>(span, [0; 8], out),
-            10 => self.decode_ids::<WORD, _>(span, [0; 10], out),
-            nodes => self.decode_ids::<WORD, _>(span, vec![0; nodes], out),
+            3 => self.decode_blocks::<WORD, 3>(span, out),
+            4 => self.decode_blocks::<WORD, 4>(span, out),
+            5 => self.decode_blocks::<WORD, 5>(span, out),
+            6 => self.decode_blocks::<WORD, 6>(span, out),
+            8 => self.decode_blocks::<WORD, 8>(span, out),
+            10 => self.decode_blocks::<WORD, 10>(span, out),
+            _ => self.decode_any::<WORD>(span.start, &self.window(&span), out),
         }
     }
 
-    fn decode_ids<const WORD: usize, I: AsMut<[u64]>>(
+    fn window(&self, span: &Range<u64>) -> Window<'_> {
+        let width = self.width as u64;
+        self.source.window(self.at + span.start * width..self.at + span.end * width)
+    }
+
+    fn decode_blocks<const WORD: usize, const NODES: usize>(
         &self,
         span: Range<u64>,
-        mut ids: I,
         out: &mut ElementSink<'_>,
     ) -> Result<()> {
-        let (width, at) = (self.width as u64, self.at + span.start * self.width as u64);
-        let window = self.source.window(at..self.at + span.end * width);
-        let ids = ids.as_mut();
-        for (k, record) in window.chunks_exact(self.width).enumerate() {
-            out.at = Spot::Binary(at + k as u64 * width);
-            self.words.ids::<WORD>(record, ids)?;
-            out.element(self.first + span.start + k as u64, self.kind, ids)?;
+        let mut ids = [[0; NODES]; BLOCK];
+        for (number, block) in self.window(&span).chunks(BLOCK * self.width).enumerate() {
+            let (count, first) = (block.len() / self.width, span.start + (number * BLOCK) as u64);
+            let labels: [u64; BLOCK] = std::array::from_fn(|k| self.first + first + k as u64);
+            let mut good = true;
+            for (ids, record) in ids.iter_mut().zip(block.chunks_exact(self.width)) {
+                good &= self.words.ids::<WORD>(record, ids);
+            }
+            if !good || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())? {
+                self.decode_any::<WORD>(first, block, out)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Record by record: elements with many nodes, and blocks with an error in them, which this finds.
+    fn decode_any<const WORD: usize>(
+        &self,
+        first: u64,
+        records: &[u8],
+        out: &mut ElementSink<'_>,
+    ) -> Result<()> {
+        let mut ids = vec![0; self.kind.nodes];
+        for (record, number) in records.chunks_exact(self.width).zip(first..) {
+            out.at = Spot::Binary(self.at + number * self.width as u64);
+            if !self.words.ids::<WORD>(record, &mut ids) {
+                return Err(negative(&ids, WORD));
+            }
+            out.element(self.first + number, self.kind, &ids)?;
         }
         Ok(())
     }

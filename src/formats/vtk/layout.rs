@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
-use crate::formats::{ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};
+use crate::formats::{BLOCK, ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};
 use crate::input::{Source, Spot};
 use crate::mesh::{Class, ElementType};
 
@@ -216,7 +216,17 @@ impl ElementLayout for Cells {
                 }
                 Lists::Counted(_) => len,
             };
-            for (k, cell) in step.clone().enumerate() {
+            let mut cells = step.clone().enumerate();
+            while let Some((k, cell)) = cells.next() {
+                if k.is_multiple_of(BLOCK)
+                    && let Lists::Ends(_) = &self.lists
+                    && let Some(end) =
+                        self.block(at, &ends[k..], &codes[k..], cell, ahead, &mut connectivity, out)?
+                {
+                    at = end;
+                    cells.nth(BLOCK - 2);
+                    continue;
+                }
                 let label = self.first_cell + cell;
                 out.at = self.connectivity.spot(at);
                 let list = match &self.lists {
@@ -237,6 +247,44 @@ impl ElementLayout for Cells {
 }
 
 impl Cells {
+    /// Hands on [`BLOCK`] cells at once, where they are of one type; gives the end of their lists. `ends` and `codes` begin
+    /// with those of `cell`.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a place in each of the arrays that are walked side by side"
+    )]
+    fn block(
+        &self,
+        at: u64,
+        ends: &[u64],
+        codes: &[u64],
+        cell: u64,
+        ahead: u64,
+        connectivity: &mut Reader<'_>,
+        out: &mut ElementSink<'_>,
+    ) -> Result<Option<u64>> {
+        let (Some(ends), Some(codes)) = (ends.first_chunk::<BLOCK>(), codes.first_chunk::<BLOCK>()) else {
+            return Ok(None);
+        };
+        let (nodes, end) = (ends[0].wrapping_sub(at), ends[BLOCK - 1]);
+        let mut expected = at;
+        let alike = ends.iter().zip(codes).fold(true, |alike, (end, code)| {
+            expected = expected.wrapping_add(nodes);
+            alike & (*end == expected) & (*code == codes[0])
+        });
+        if !alike || nodes * BLOCK as u64 > Reader::BATCH || end > self.connectivity.len() {
+            return Ok(None);
+        }
+        // What is wrong with these cells is found one by one.
+        let Ok(kind) = cells::find(codes[0], nodes, cell) else { return Ok(None) };
+        if kind.nodes as u64 != nodes || self.points.is_some() {
+            return Ok(None);
+        }
+        let labels: [u64; BLOCK] = std::array::from_fn(|k| self.first_cell + cell + k as u64);
+        let ids = connectivity.get(at..end, ahead);
+        Ok(out.block(kind, &labels, ids)?.then_some(end))
+    }
+
     #[inline]
     fn checked_end(&self, start: u64, end: u64, label: u64) -> Result<u64> {
         if end < start || end > self.connectivity.len() {
