@@ -6,12 +6,14 @@
 
 mod abaqus;
 mod ansys;
+mod array;
 mod axes;
 mod batch;
 pub mod binary;
 pub mod columns;
 mod comsol;
 pub mod degenerate;
+mod exodus;
 mod femgv;
 mod gmsh;
 mod lsdyna;
@@ -19,6 +21,7 @@ mod matlab;
 mod medit;
 mod nag;
 mod nastran;
+mod netcdf;
 mod netgen;
 mod openfoam;
 mod plan;
@@ -150,6 +153,7 @@ pub static FORMATS: &[&dyn Format] = &[
     &ansys::Ansys,
     &lsdyna::Lsdyna,
     &openfoam::OpenFoam,
+    &exodus::Exodus,
 ];
 
 /// The format named `name`.

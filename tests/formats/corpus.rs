@@ -59,6 +59,7 @@ const REFUSED: &[(&str, &str)] = &[
     // What a deck includes: data lines without a keyword.
     ("abaqus/synthetic_torture/nodes_b.inp", "expected a mesh of a known format"),
     ("nastran/include_mode_solid_shell_bar.bdf", "included file \"geom.inc\""),
+    ("exodus/meshio_mixed.e", "expected a mesh of a known format"),
     ("matlab/synthetic_pit2d_v4.mat", "expected a mesh of a known format"),
     ("matlab/synthetic_pit2d_v73.mat", "version 7.3 (HDF5) are not read yet"),
     ("vtu/vtkio_hexahedron_parallel.pvtu", "score the pieces"),

@@ -97,6 +97,9 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("openfoam", "polyhedra_binary", 882, &[(Hexahedron, 184)], 110),
     ("openfoam", "pyramids_binary", 134, PYRAMIDS, 0),
     ("openfoam", "pyramids_gz", 134, PYRAMIDS, 0),
+    ("exodus", "mixed_cdf1.e", 54, MIXED, 0),
+    ("exodus", "mixed_cdf2_map.e", 54, MIXED, 0),
+    ("exodus", "mixed_cdf5_results.e", 54, MIXED, 0),
 ];
 
 fn folder(format: &str) -> PathBuf {

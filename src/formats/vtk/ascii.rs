@@ -7,7 +7,8 @@ use crate::formats::binary::Endian;
 use crate::formats::text::{self, LineReader};
 use crate::input::{Input, Spot};
 
-use super::array::{Number, Origin, Role, Stored, Unpacked};
+use super::role::Role;
+use crate::formats::array::{Number, Origin, Stored, Unpacked};
 
 /// Unpacks the `count` numbers between blanks at the start of `range`, or as many as stand before the next `<` where
 /// there is no count. Gives the array and the byte at which it ended.

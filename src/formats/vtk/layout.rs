@@ -4,12 +4,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
+use crate::formats::array::{Array, Reader};
 use crate::formats::binary::cut_records;
 use crate::formats::{BLOCK, ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};
 use crate::input::{Source, Spot};
 use crate::mesh::{Class, ElementType};
 
-use super::array::{Array, Reader};
 use super::cells;
 
 /// Most cells that are looked at in one go.

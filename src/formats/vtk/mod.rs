@@ -10,13 +10,13 @@
 //! triangles the other way round, and writers of both kinds are about. Corners are kept as they stand; the sign of a
 //! wedge's volume means something only against the other wedges of its mesh.
 
-mod array;
 mod ascii;
 mod cells;
 mod layout;
 mod legacy;
 mod markup;
 mod payload;
+mod role;
 mod vtu;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
 use crate::input::{Input, Source};
 
-use super::array::Unpacked;
+use crate::formats::array::Unpacked;
 
 /// Largest block that is unpacked, in bytes. VTK's own blocks have 32 KiB.
 const LARGEST_BLOCK: u64 = 1 << 30;

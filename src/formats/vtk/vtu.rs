@@ -4,16 +4,17 @@
 //! being XML and offsets rule. A file may have several pieces; the numbers of points start anew in each.
 
 use crate::error::{Error, Result};
+use crate::formats::array::{Number, Origin, Stored, Stores, Unpacked, check_fits};
 use crate::formats::binary::Endian;
 use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
 use crate::mesh::Shape;
 
-use super::array::{Number, Origin, Role, Stored, Stores, Unpacked, check_fits};
 use super::ascii;
 use super::layout::{Cells, Lists, Points, Types};
 use super::markup::{Tag, Tags};
 use super::payload::{Bytes, Compressor, HeaderType, unpack_blocks};
+use super::role::Role;
 
 /// VTK's XML unstructured grids.
 #[derive(Debug)]
@@ -353,7 +354,7 @@ impl DataArray {
             bytes.copy(len, out)?;
         } else {
             stored = Stored { origin: Origin::File, at: bytes.position(), ..stored };
-            check_fits(source, &stored, role)?;
+            check_fits(source, &stored, role.name())?;
         }
         Ok(stored)
     }
@@ -380,7 +381,7 @@ impl Grid {
         several: bool,
         out: &mut dyn Outline,
     ) -> Result<()> {
-        let array = |role: Role| stores.array(self.arrays[role as usize], role);
+        let array = |role: Role| stores.array(self.arrays[role as usize], role.name());
         let file = stores.file.clone();
         Points { file: file.clone(), coordinates: array(Role::Coordinate)? }.outline(out)?;
         let (lists, types) = (Lists::Ends(array(Role::Offset)?), Types::Each(array(Role::Code)?));

@@ -12,8 +12,9 @@ use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
 use crate::mesh::Shape;
 
-use super::array::{Array, Number, Role, Stored, Stores};
 use super::layout::{Cells, Lists, Points, Types, walk_counted};
+use super::role::Role;
+use crate::formats::array::{Array, Number, Stored, Stores};
 use reader::Reader;
 
 /// Legacy VTK.
@@ -82,7 +83,7 @@ const POLYGONAL: [(&str, u64); 4] = [("VERTICES", 2), ("LINES", 4), ("POLYGONS",
 impl Grid {
     fn outline(self, stores: &Stores, out: &mut dyn Outline) -> Result<()> {
         let points = self.points.expect("the reader asks for points");
-        let (file, coordinates) = (stores.file.clone(), stores.array(points, Role::Coordinate)?);
+        let (file, coordinates) = (stores.file.clone(), stores.array(points, Role::Coordinate.name())?);
         Points { file, coordinates }.outline(out)?;
         let mut first_cell = 0;
         for section in self.cells {
@@ -90,7 +91,7 @@ impl Grid {
                 Some(code) => Types::All(code),
                 None => {
                     let types = self.types.expect("the reader asks for types");
-                    Types::Each(stores.array(types, Role::Code)?)
+                    Types::Each(stores.array(types, Role::Code.name())?)
                 }
             };
             let (lists, connectivity) = section.lists.open(stores, section.count)?;
@@ -109,18 +110,18 @@ impl StoredLists {
     fn open(self, stores: &Stores, cells: u64) -> Result<(Lists, Array)> {
         match self {
             StoredLists::Counted(lists) => {
-                let lists = stores.array(lists, Role::Point)?;
+                let lists = stores.array(lists, Role::Point.name())?;
                 Ok((Lists::Counted(walk_counted(&stores.file, &lists, cells)?), lists))
             }
             StoredLists::Offsets { offsets, connectivity } => {
-                let offsets = stores.array(offsets, Role::Offset)?;
+                let offsets = stores.array(offsets, Role::Offset.name())?;
                 let mut first = Vec::new();
                 offsets.integers(0..1, &mut first);
                 if let Some(first) = first.first().filter(|first| **first != 0) {
                     let error = Error::malformed("0 as the first offset", format!("{}", first.cast_signed()));
                     return Err(stores.file.place(error, offsets.spot(0)));
                 }
-                let connectivity = stores.array(connectivity, Role::Point)?;
+                let connectivity = stores.array(connectivity, Role::Point.name())?;
                 Ok((Lists::Ends(offsets.without_first()), connectivity))
             }
         }

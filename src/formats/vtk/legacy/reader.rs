@@ -6,9 +6,10 @@ use crate::formats::binary::Endian;
 use crate::formats::text::{self, LineReader};
 use crate::input::Input;
 
-use super::super::array::{Number, Origin, Role, Stored, Unpacked, check_fits};
 use super::super::ascii;
+use super::super::role::Role;
 use super::Legacy;
+use crate::formats::array::{Number, Origin, Stored, Unpacked, check_fits};
 
 /// Reads a file from section to section.
 pub struct Reader<'i> {
@@ -55,7 +56,7 @@ impl<'i> Reader<'i> {
         }
         self.end_line()?;
         let stored = Stored { origin: Origin::File, at: self.at, number, endian: Endian::Big, count };
-        self.at = check_fits(&self.input.source, &stored, role)?;
+        self.at = check_fits(&self.input.source, &stored, role.name())?;
         Ok(stored)
     }
 

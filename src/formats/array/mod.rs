@@ -1,4 +1,8 @@
-//! Arrays of equal numbers, read through windows wherever they stand.
+//! Arrays of equal numbers, read through windows wherever they stand, and the nodes and elements that arrays hold.
+
+pub mod elements;
+pub mod nodes;
+pub mod table;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -30,47 +34,6 @@ impl Number {
             Number::I16 | Number::U16 => 2,
             Number::I32 | Number::U32 | Number::F32 => 4,
             Number::I64 | Number::U64 | Number::F64 => 8,
-        }
-    }
-}
-
-/// What an array is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
-    /// x, y, z of the points.
-    Coordinate,
-    /// Points of the cells, perhaps with the length of each list before it.
-    Point,
-    /// Where the cells' lists of points end.
-    Offset,
-    /// Types of the cells.
-    Code,
-}
-
-impl Role {
-    /// The array's name in errors, and in VTU files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Role::Coordinate => "points",
-            Role::Point => "connectivity",
-            Role::Offset => "offsets",
-            Role::Code => "types",
-        }
-    }
-
-    /// Whether an array of such numbers can serve.
-    pub fn allows(self, number: Number) -> bool {
-        self == Role::Coordinate || !matches!(number, Number::F32 | Number::F64)
-    }
-
-    /// How text is unpacked. More points than an unsigned number of 32 bits can count are not read in any way.
-    pub fn unpacked(self, declared: Number) -> Number {
-        match self {
-            Role::Coordinate if declared == Number::F32 => Number::F32,
-            Role::Coordinate => Number::F64,
-            Role::Point => Number::U32,
-            Role::Offset => Number::U64,
-            Role::Code => Number::U8,
         }
     }
 }
@@ -157,21 +120,21 @@ pub struct Stores {
 
 impl Stores {
     /// The array that was stored.
-    pub fn array(&self, stored: Stored, role: Role) -> Result<Array> {
+    pub fn array(&self, stored: Stored, name: &str) -> Result<Array> {
         let source = if matches!(stored.origin, Origin::File) { &self.file } else { &self.scratch };
-        check_fits(source, &stored, role)?;
+        check_fits(source, &stored, name)?;
         Ok(Array { source: Arc::clone(source), stored })
     }
 }
 
 /// The byte after an array, which must lie in the file.
-pub fn check_fits(source: &Source, stored: &Stored, role: Role) -> Result<u64> {
+pub fn check_fits(source: &Source, stored: &Stored, name: &str) -> Result<u64> {
     let bytes = stored.count.checked_mul(stored.number.width());
     match bytes.and_then(|bytes| stored.at.checked_add(bytes)) {
         Some(end) if end <= source.len() => Ok(end),
         _ => {
             let (count, width) = (stored.count, stored.number.width());
-            let what = format!("{count} numbers of {width} bytes ({}) from byte {}", role.name(), stored.at);
+            let what = format!("{count} numbers of {width} bytes ({name}) from byte {}", stored.at);
             Err(source.truncated(what))
         }
     }
@@ -220,6 +183,14 @@ impl Array {
     /// Number of bytes of one number.
     pub fn width(&self) -> u64 {
         self.stored.number.width()
+    }
+
+    /// The numbers of `range`, cut to the array's end, as an array.
+    pub fn part(&self, range: Range<u64>) -> Self {
+        let end = range.end.min(self.len());
+        let start = range.start.min(end);
+        let at = self.stored.at + start * self.width();
+        Self { stored: Stored { at, count: end - start, ..self.stored }, source: Arc::clone(&self.source) }
     }
 
     /// The array without its first number.
