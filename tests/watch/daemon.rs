@@ -81,6 +81,14 @@ impl Site {
         daemon
     }
 
+    /// The text of a small file, if it is there.
+    pub fn text(&self, path: &str) -> Option<String> {
+        let mut text = Vec::new();
+        let file = File::open(self.path(path)).ok()?;
+        std::io::copy(&mut std::io::Read::take(file, 1 << 20), &mut text).ok()?;
+        String::from_utf8(text).ok()
+    }
+
     /// All lines of the log.
     pub fn log(&self) -> Vec<Value> {
         let Ok(file) = File::open(self.path("results/meshgauge.jsonl")) else { return Vec::new() };
@@ -137,6 +145,11 @@ pub struct Daemon<'a> {
 }
 
 impl Daemon<'_> {
+    /// Its process.
+    pub fn process(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Waits until something holds.
     pub fn wait(&self, what: &str, holds: impl Fn() -> bool) {
         let start = Instant::now();

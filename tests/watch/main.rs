@@ -5,4 +5,5 @@ mod arriving;
 mod daemon;
 mod failing;
 mod naming;
+mod status;
 mod stopping;

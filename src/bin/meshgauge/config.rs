@@ -1,6 +1,7 @@
 //! The configuration: defaults, then the file, then the command line.
 
 use std::collections::BTreeMap;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -28,6 +29,8 @@ pub struct Config {
     pub watch: Watch,
     /// The processes that score for the daemon.
     pub worker: Worker,
+    /// What the daemon tells of itself.
+    pub telemetry: Telemetry,
     /// What the program says about itself.
     pub diagnostics: Diagnostics,
 }
@@ -110,6 +113,31 @@ pub struct Worker {
     pub time: Span,
     pub memory: Size,
     pub retry: Span,
+}
+
+/// `[telemetry]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Telemetry {
+    pub interval: Span,
+    pub metrics_file: PathBuf,
+    pub listen: String,
+    pub stalled: Span,
+}
+
+impl Telemetry {
+    /// Where to listen, if anywhere.
+    pub fn address(&self) -> Result<Option<SocketAddr>, Usage> {
+        if self.listen.is_empty() {
+            return Ok(None);
+        }
+        let wrong =
+            |what: &str| Usage(format!("telemetry.listen: expected {what}, found \"{}\"", self.listen));
+        let address: SocketAddr =
+            self.listen.parse().map_err(|_| wrong("an address such as 127.0.0.1:9817"))?;
+        if address.ip().is_loopback() { Ok(Some(address)) } else { Err(wrong("a loopback address")) }
+    }
 }
 
 /// `[diagnostics]`
@@ -196,6 +224,17 @@ impl Default for Worker {
     }
 }
 
+impl Default for Telemetry {
+    fn default() -> Self {
+        Self {
+            interval: Span(Duration::from_secs(5)),
+            metrics_file: PathBuf::new(),
+            listen: String::new(),
+            stalled: Span(Duration::from_secs(60)),
+        }
+    }
+}
+
 impl Default for Diagnostics {
     fn default() -> Self {
         Self { level: "warn".into() }
@@ -216,6 +255,7 @@ impl Config {
     pub fn check(&self) -> Result<(), Usage> {
         selection::measures(&self.score.measures)?;
         self.verdict.judgement()?;
+        self.telemetry.address()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
         let wrong = [
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
@@ -229,6 +269,14 @@ impl Config {
                     "worker.memory ({}) must be over score.memory ({})",
                     self.worker.memory, self.score.memory
                 ),
+            ),
+            (
+                self.telemetry.interval.0 < Duration::from_millis(100),
+                "telemetry.interval must be at least 100ms".to_owned(),
+            ),
+            (
+                self.telemetry.stalled <= self.telemetry.interval,
+                "telemetry.stalled must be over telemetry.interval".to_owned(),
             ),
             (
                 !levels.contains(&self.diagnostics.level.as_str()),

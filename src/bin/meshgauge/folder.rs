@@ -4,6 +4,7 @@
 //! passed over, as are our own results. A folder that is one mesh, such as a case of OpenFOAM, stands among the files and
 //! is not looked into.
 
+use std::ffi::OsStr;
 use std::fs::{self, Metadata};
 use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -110,7 +111,7 @@ impl Walk {
         scan.folders.push((folder.to_owned(), place(&data)));
         for entry in fs::read_dir(&here)? {
             let name = entry?.file_name();
-            if self.ignore.iter().any(|pattern| matches(pattern.as_bytes(), name.as_encoded_bytes())) {
+            if ignored_by(&self.ignore, &name).is_some() {
                 continue;
             }
             let path = folder.join(name);
@@ -215,6 +216,12 @@ impl Walk {
             Found::File(Identity::from(&data))
         }
     }
+}
+
+/// The first of the patterns that a name fits.
+pub fn ignored_by<'p>(patterns: &'p [String], name: &OsStr) -> Option<&'p str> {
+    let fits = |pattern: &&String| matches(pattern.as_bytes(), name.as_encoded_bytes());
+    patterns.iter().find(fits).map(String::as_str)
 }
 
 /// Device and inode: the same for every name that leads to one file.

@@ -18,6 +18,7 @@ mod quantity;
 mod rules;
 mod selection;
 mod state;
+mod status;
 
 use std::process::ExitCode;
 

@@ -6,11 +6,27 @@ use std::io::{self, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+use tempfile::NamedTempFile;
+
 /// How the names of files that are not yet published begin and end.
 const UNFINISHED: (&str, &str) = (".meshgauge-", ".tmp");
 
+/// Replaces `path` for readers, without waiting for the disk: for what is of no worth after a crash.
+pub fn replace(path: &Path, text: &str) -> io::Result<()> {
+    unfinished(path, text)?.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
 /// Writes `text` to `path`: temporary file in the same folder, fsync, rename, fsync of the folder.
 pub fn publish(path: &Path, text: &str) -> io::Result<()> {
+    let file = unfinished(path, text)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|e| e.error)?;
+    sync_folder(folder_of(path))
+}
+
+/// A temporary file beside `path` that holds `text`.
+fn unfinished(path: &Path, text: &str) -> io::Result<NamedTempFile> {
     let folder = folder_of(path);
     fs::create_dir_all(folder)?;
     let mut file = tempfile::Builder::new()
@@ -19,9 +35,7 @@ pub fn publish(path: &Path, text: &str) -> io::Result<()> {
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)?;
     file.write_all(text.as_bytes())?;
-    file.as_file().sync_all()?;
-    file.persist(path).map_err(|e| e.error)?;
-    sync_folder(folder)
+    Ok(file)
 }
 
 /// Gives a published file another name in the same folder.

@@ -8,6 +8,7 @@ mod man;
 mod measures;
 mod output;
 mod score;
+mod status;
 mod watch;
 mod worker;
 
@@ -46,6 +47,7 @@ With several meshes the others are still scored, and the highest status is retur
 enum Command {
     Score(score::Args),
     Watch(watch::Args),
+    Status(status::Args),
     Generate(generate::Args),
     Formats(formats::Args),
     Measures(measures::Args),
@@ -84,6 +86,7 @@ pub fn run(cli: Cli) -> anyhow::Result<Status> {
             start(&config);
             watch::run(&args, config)
         }
+        Command::Status(args) => status::run(&args),
         Command::Worker(args) => {
             start(&Config::default());
             worker::run(&args)

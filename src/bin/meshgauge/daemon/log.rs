@@ -4,11 +4,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 use anyhow::Context;
 use serde_json::{Map, Value};
 
+use super::telemetry::Heard;
 use crate::path_text::PathText;
 use crate::state::{LogMark, Logged};
 
@@ -16,6 +18,7 @@ use crate::state::{LogMark, Logged};
 pub struct Log {
     path: PathBuf,
     file: File,
+    heard: Option<Arc<Heard>>,
 }
 
 /// One line of the log: `timestamp`, `level`, `event`, `mesh` where it is about one, then the rest.
@@ -79,7 +82,12 @@ impl Log {
             file.set_len(whole)?;
             file.sync_all()?;
         }
-        Ok((Self { path: path.to_owned(), file }, torn))
+        Ok((Self { path: path.to_owned(), file, heard: None }, torn))
+    }
+
+    /// Tells of each line that is written from now on.
+    pub fn hear_with(&mut self, heard: Arc<Heard>) {
+        self.heard = Some(heard);
     }
 
     /// The end of the log.
@@ -100,13 +108,17 @@ impl Log {
     }
 
     fn write(&mut self, event: Event) -> io::Result<()> {
-        let mut line = Value::Object(event.0).to_string();
+        let event = Value::Object(event.0);
+        let mut line = event.to_string();
         line.push('\n');
         let length = self.file.metadata()?.len();
         let written = self.file.write(line.as_bytes())?;
         if written < line.len() {
             self.file.set_len(length)?;
             return Err(io::Error::new(io::ErrorKind::StorageFull, "no room for a whole line"));
+        }
+        if let (Some(heard), Some(event)) = (&self.heard, event.as_object()) {
+            heard.hear(event);
         }
         Ok(())
     }

@@ -14,8 +14,10 @@ mod record;
 mod service;
 mod settle;
 mod signals;
+mod telemetry;
 mod tracking;
 mod watching;
+mod work;
 mod worker;
 
 use std::fs::File;
@@ -31,6 +33,7 @@ use crate::state::State;
 
 use log::{Event, Log};
 use record::Record;
+use telemetry::Telemetry;
 use watching::Watching;
 
 pub use worker::serve;
@@ -73,6 +76,17 @@ impl Places {
             state: or(&watch.state, given.unwrap_or_else(|| watch.results.join(".meshgauge"))),
         }
     }
+
+    /// The same from whatever folder they are seen.
+    fn absolute(&self) -> std::io::Result<Self> {
+        let absolute = std::path::absolute::<&Path>;
+        Ok(Self {
+            drop: absolute(&self.drop)?,
+            results: absolute(&self.results)?,
+            log: absolute(&self.log)?,
+            state: absolute(&self.state)?,
+        })
+    }
 }
 
 /// Runs the daemon until it is stopped or, in `once` mode, until all is scored.
@@ -87,7 +101,9 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
     let stop = signals::stop_requests().context("signals")?;
     record::make_folders([&places.results, &places.state])?;
     let lock = lock(&places.state)?;
-    let (log, torn) = Log::open(&places.log).with_context(|| places.log.display().to_string())?;
+    let (mut log, torn) = Log::open(&places.log).with_context(|| places.log.display().to_string())?;
+    let telemetry = Telemetry::start(&config, &places)?;
+    log.hear_with(telemetry.heard());
     let state = State::open(&places.state)?;
     let mut record = Record::new(log, state, &places.results, mode.quiet)?;
     if torn > 0 {
@@ -95,10 +111,12 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
     }
     record.event(started(&places, mode))?;
     let mut walk = Walk::new(&places.drop, &config.watch);
-    for ours in [&places.results, &places.state, &places.log, &config.score.scratch] {
+    for ours in
+        [&places.results, &places.state, &places.log, &config.score.scratch, &config.telemetry.metrics_file]
+    {
         walk.exclude(ours);
     }
-    let status = Watching::new(config, walk, record, mode).run(&stop)?;
+    let status = Watching::new(config, walk, record, telemetry, mode).run(&stop)?;
     drop(lock);
     Ok(status)
 }

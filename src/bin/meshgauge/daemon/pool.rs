@@ -11,6 +11,7 @@ use meshgauge::Summary;
 
 use super::process::{NoAnswer, Process, deadline};
 use super::protocol::{Answer, Failure, FailureKind, Request};
+use super::work::Work;
 use crate::config::Config;
 use crate::identity::Identity;
 use crate::path_text::PathText;
@@ -58,7 +59,7 @@ pub struct Pool {
 
 impl Pool {
     /// Starts the threads; their processes start with the first mesh.
-    pub fn start(drop: &Path, config: &Config) -> Self {
+    pub fn start(drop: &Path, config: &Config, work: &Work) -> Self {
         let count = config.worker.count;
         let (jobs, queue) = bounded::<Job>(count);
         let (sender, outcomes) = bounded(count);
@@ -70,11 +71,14 @@ impl Pool {
                 config: shared_out(config),
                 process: None,
                 abandoned: Arc::clone(&abandoned),
+                work: work.clone(),
             };
             std::thread::spawn(move || {
                 for job in queue {
                     let start = Instant::now();
+                    seat.work.begin(&job.path, job.identity.size);
                     let result = seat.score(&job);
+                    seat.work.end(&job.path);
                     let Job { path, identity } = job;
                     if sender.send(Outcome { path, identity, result, time: start.elapsed() }).is_err() {
                         break;
@@ -117,6 +121,7 @@ struct Seat {
     config: Config,
     process: Option<Process>,
     abandoned: Arc<AtomicBool>,
+    work: Work,
 }
 
 impl Seat {
@@ -125,7 +130,7 @@ impl Seat {
         if let Some(other) = other_version(&path, &job.identity) {
             return other;
         }
-        let found = match self.ask(&path) {
+        let found = match self.ask(&path, &job.path) {
             Ok(Answer::Scored(summary)) => Found::Scored(summary),
             Ok(Answer::Failed(failure)) => Found::Failed(failure),
             Err(NoAnswer::Abandoned) => return Found::Abandoned,
@@ -139,7 +144,7 @@ impl Seat {
         other_version(&path, &job.identity).unwrap_or(found)
     }
 
-    fn ask(&mut self, path: &Path) -> Result<Answer, NoAnswer> {
+    fn ask(&mut self, path: &Path, mesh: &Path) -> Result<Answer, NoAnswer> {
         let request = Request { path: PathText::from(path), config: self.config.clone() };
         let mut line = serde_json::to_vec(&request).map_err(|e| NoAnswer::Died(e.to_string()))?;
         line.push(b'\n');
@@ -151,8 +156,12 @@ impl Seat {
             }
         };
         let abandoned = Arc::clone(&self.abandoned);
-        let answer =
-            process.answer(deadline(self.config.worker.time.0), || abandoned.load(Ordering::Relaxed));
+        let deadline = deadline(self.config.worker.time.0);
+        let answer = process.answer(
+            deadline,
+            || abandoned.load(Ordering::Relaxed),
+            |progress| self.work.heard(mesh, progress),
+        );
         if answer.is_ok() {
             self.process = Some(process);
         }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
+use memchr::memchr;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use super::protocol::Answer;
+use super::protocol::{Answer, Progress, Said};
 
 /// Longest answer: a summary has a few hundred numbers and some names out of the mesh.
 const LONGEST_ANSWER: usize = 64 << 20;
@@ -76,8 +77,13 @@ impl Process {
         self.requests.flush()
     }
 
-    /// Waits for the answer to the request.
-    pub fn answer(&mut self, deadline: Instant, abandoned: impl Fn() -> bool) -> Result<Answer, NoAnswer> {
+    /// Waits for the answer to the request; what the worker says on the way goes to `heard`.
+    pub fn answer(
+        &mut self,
+        deadline: Instant,
+        abandoned: impl Fn() -> bool,
+        heard: impl Fn(Progress),
+    ) -> Result<Answer, NoAnswer> {
         let mut answer = Vec::new();
         let mut block = vec![0; 1 << 16];
         let mut complains = true;
@@ -100,9 +106,17 @@ impl Process {
                 return Err(NoAnswer::Died(self.obituary(&mut block, complains)));
             }
             answer.extend_from_slice(&block[..read]);
-            if answer.last() == Some(&b'\n') {
-                return serde_json::from_slice(&answer)
-                    .map_err(|e| NoAnswer::Died(format!("the worker's answer was not understood: {e}")));
+            while let Some(end) = memchr(b'\n', &answer) {
+                let line: Vec<u8> = answer.drain(..=end).collect();
+                match serde_json::from_slice(&line) {
+                    Ok(Said::Progress(progress)) => heard(progress),
+                    Ok(Said::Answer(answer)) => return Ok(answer),
+                    Err(error) => {
+                        return Err(NoAnswer::Died(format!(
+                            "the worker's answer was not understood: {error}"
+                        )));
+                    }
+                }
             }
             if answer.len() > LONGEST_ANSWER {
                 return Err(NoAnswer::Died("the worker's answer has no end".into()));

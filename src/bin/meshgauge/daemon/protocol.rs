@@ -27,6 +27,44 @@ pub enum Answer {
     Failed(Failure),
 }
 
+/// What a worker says.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Said {
+    /// It is being scored.
+    Progress(Progress),
+    /// It is done with.
+    Answer(Answer),
+}
+
+/// How far a worker is with its mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Progress {
+    /// Pieces (about 1 MiB each) that are known.
+    pub pieces: u64,
+    /// Pieces that are done.
+    pub pieces_done: u64,
+    /// Elements that are measured.
+    pub elements: u64,
+}
+
+impl Progress {
+    /// The phase, in words.
+    pub fn phase(self) -> &'static str {
+        match self {
+            Progress { pieces: 0, .. } => "opening",
+            Progress { elements: 0, .. } => "reading nodes",
+            Progress { .. } => "measuring elements",
+        }
+    }
+}
+
+impl From<&meshgauge::Progress> for Progress {
+    fn from(progress: &meshgauge::Progress) -> Self {
+        Self { pieces: progress.pieces(), pieces_done: progress.pieces_done(), elements: progress.elements() }
+    }
+}
+
 /// Why a mesh could not be scored.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Failure {

@@ -33,6 +33,11 @@ impl Settling {
         self.identity
     }
 
+    /// How long it must stand still for, from `now` on.
+    pub fn left(&self, now: Instant, settle: Duration) -> Duration {
+        quiet(&self.identity, settle).saturating_sub(now.duration_since(self.since))
+    }
+
     /// Another look; says whether the file has stood still for long enough.
     pub fn look(&mut self, identity: Identity, now: Instant, settle: Duration) -> bool {
         if identity != self.identity {

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::settle::Settling;
 use crate::identity::Identity;
+use crate::status::Waits;
 
 /// A file that is not done with.
 #[derive(Debug)]
@@ -65,6 +66,36 @@ impl Tracking {
     /// Number of files that are being scored.
     pub fn running(&self) -> usize {
         self.running
+    }
+
+    /// When the file was first seen that has been known for the longest time.
+    pub fn oldest(&self) -> Option<Instant> {
+        self.files.values().map(|file| file.first).min()
+    }
+
+    /// The files that wait, those that are next first: path, bytes, for what, and since when they are known.
+    pub fn waiting(&self, now: Instant) -> impl Iterator<Item = (&Path, u64, Waits, Instant)> {
+        let seconds = |time: Duration| time.as_secs_f64();
+        let queued = self.queue.iter().filter_map(|path| match self.files.get(path) {
+            Some(Tracked { state: State::Ready(identity), first, .. }) => Some((path, identity.size, *first)),
+            _ => None,
+        });
+        let queued = queued
+            .zip(1..)
+            .map(|((path, bytes, first), place)| (path.as_path(), bytes, Waits::Queued(place), first));
+        let others = self.files.iter().filter_map(move |(path, file)| {
+            let (bytes, waits) = match &file.state {
+                State::Settling(settling) => {
+                    (settling.identity().size, Waits::Settling(seconds(settling.left(now, self.settle))))
+                }
+                State::Postponed { identity, until } => {
+                    (identity.size, Waits::Postponed(seconds(until.saturating_duration_since(now))))
+                }
+                State::Ready(_) | State::Running => return None,
+            };
+            Some((path.as_path(), bytes, waits, file.first))
+        });
+        queued.chain(others)
     }
 
     /// Whether this file is known.

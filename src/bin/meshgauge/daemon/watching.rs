@@ -13,6 +13,7 @@ use super::pool::{Found as Scored, Job, Outcome, Pool};
 use super::protocol::{Failure, FailureKind};
 use super::record::Record;
 use super::service::Service;
+use super::telemetry::Telemetry;
 use super::tracking::Tracking;
 use crate::config::Config;
 use crate::exit::Status;
@@ -33,6 +34,7 @@ pub struct Watching {
     pool: Pool,
     record: Record,
     service: Service,
+    telemetry: Telemetry,
     status: Status,
     scored: u64,
     failed: u64,
@@ -52,13 +54,14 @@ enum End {
 
 impl Watching {
     /// Ready to run.
-    pub fn new(config: Config, walk: Walk, record: Record, mode: Mode) -> Self {
+    pub fn new(config: Config, walk: Walk, record: Record, telemetry: Telemetry, mode: Mode) -> Self {
         let now = Instant::now();
         Self {
             hints: Hints::new(config.watch.events && !mode.once),
             tracking: Tracking::new(config.watch.settle.0),
-            pool: Pool::start(walk.root(), &config),
+            pool: Pool::start(walk.root(), &config, &telemetry.work()),
             service: Service::new(),
+            telemetry,
             status: Status::Fine,
             scored: 0,
             failed: 0,
@@ -87,6 +90,7 @@ impl Watching {
             .with("failed", self.failed);
         self.record.event(stopping)?;
         self.drain(stop)?;
+        self.telemetry.ended(reason, &self.tracking);
         Ok(if self.mode.once { self.status } else { Status::Fine })
     }
 
@@ -95,6 +99,7 @@ impl Watching {
             self.look()?;
             self.claim()?;
             self.service.alive();
+            self.telemetry.turned(&self.tracking);
             if self.mode.once && self.tracking.is_empty() {
                 return Ok(End::Drained);
             }
@@ -113,6 +118,7 @@ impl Watching {
             if self.tracking.settling() > 0 { self.next_look.min(self.next_scan) } else { self.next_scan };
         let next = if self.mode.once { self.next_look } else { next };
         let pause = next.saturating_duration_since(Instant::now());
+        let pause = pause.min(self.telemetry.longest_round());
         self.service.longest_round().map_or(pause, |longest| pause.min(longest))
     }
 
@@ -190,6 +196,7 @@ impl Watching {
         if self.scanned.is_none() {
             self.service.ready();
         }
+        self.telemetry.scanned(&scan, end - start);
         self.scanned = Some((end, end - start));
         self.next_scan = end + self.config.watch.scan.0;
         self.tell();
@@ -283,8 +290,10 @@ impl Watching {
         let mut abandoned = false;
         while self.tracking.running() > 0 {
             let left = deadline.saturating_duration_since(Instant::now());
+            let left = left.min(self.telemetry.longest_round());
             let round = self.service.longest_round().map_or(left, |longest| left.min(longest));
             self.service.alive();
+            self.telemetry.turned(&self.tracking);
             select! {
                 recv(self.pool.outcomes()) -> outcome => self.finish(outcome?)?,
                 recv(stop) -> _ => deadline = Instant::now(),

@@ -6,6 +6,7 @@
 //! write-ahead log: there it is kept with a rollback journal.
 
 mod id;
+mod lookup;
 mod meshes;
 mod path_value;
 mod recovery;
@@ -21,6 +22,7 @@ use rusqlite::{Connection, Transaction};
 use crate::file_system;
 
 pub use id::Id;
+pub use lookup::Known;
 pub use recovery::{LogMark, Logged};
 pub use versions::{Failed, Stage};
 

@@ -35,6 +35,17 @@ pub struct Failed<'t> {
     pub reason: &'t str,
 }
 
+/// All stages.
+const STAGES: [Stage; 7] = [
+    Stage::Claimed,
+    Stage::Scored,
+    Stage::Failed,
+    Stage::Waiting,
+    Stage::Quarantined,
+    Stage::Ignored,
+    Stage::Dropped,
+];
+
 /// The stages of versions that nothing is left to do for.
 const END: [Stage; 4] = [Stage::Scored, Stage::Failed, Stage::Quarantined, Stage::Ignored];
 
@@ -50,6 +61,11 @@ impl Stage {
             Stage::Ignored => "ignored",
             Stage::Dropped => "dropped",
         }
+    }
+
+    /// The stage of that name.
+    pub(super) fn of_name(name: &str) -> Option<Self> {
+        STAGES.into_iter().find(|stage| stage.name() == name)
     }
 
     /// Whether nothing is left to do for a version at this stage.
