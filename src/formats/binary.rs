@@ -30,7 +30,10 @@ macro_rules! read {
 }
 
 impl Endian {
-    read!(u32 u32, i32 i32, u64 u64, i64 i64, f32 f32, f64 f64);
+    /// The machine's own.
+    pub const NATIVE: Endian = if cfg!(target_endian = "little") { Endian::Little } else { Endian::Big };
+
+    read!(u16 u16, u32 u32, i32 i32, u64 u64, i64 i64, f32 f32, f64 f64);
 }
 
 /// Cuts `count` records of `width` bytes into runs of about [`PIECE_BYTES`]; gives their record numbers.

@@ -10,14 +10,20 @@ mod array;
 mod axes;
 mod batch;
 pub mod binary;
+#[cfg(feature = "hdf5")]
+mod cgns;
 pub mod columns;
 mod comsol;
 pub mod degenerate;
 mod exodus;
 mod femgv;
 mod gmsh;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod lsdyna;
 mod matlab;
+#[cfg(feature = "hdf5")]
+mod med;
 mod medit;
 mod nag;
 mod nastran;
@@ -39,6 +45,7 @@ mod ugrid;
 mod unv;
 mod vtk;
 pub mod words;
+mod xdmf;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -68,6 +75,11 @@ pub trait Format: Sync {
     fn looks_for(&self) -> &'static str;
     /// Whether the first bytes (at most [`HEAD_BYTES`]) are of this format.
     fn detect(&self, head: &[u8]) -> bool;
+    /// Whether the file is of this format: for containers whose directory may stand anywhere in the file, so that the
+    /// first bytes cannot tell.
+    fn knows(&self, input: &Input) -> bool {
+        self.detect(input.source.peek(0..HEAD_BYTES as u64))
+    }
     /// Shapes whose orientation the format's writers do not agree on: each such shape is judged by its own majority
     /// instead of the mesh's.
     fn own_orientation(&self) -> &'static [Shape] {
@@ -154,6 +166,13 @@ pub static FORMATS: &[&dyn Format] = &[
     &lsdyna::Lsdyna,
     &openfoam::OpenFoam,
     &exodus::Exodus,
+    #[cfg(feature = "hdf5")]
+    &med::Med,
+    #[cfg(feature = "hdf5")]
+    &cgns::Cgns,
+    #[cfg(feature = "hdf5")]
+    &vtk::VtkHdf,
+    &xdmf::Xdmf,
 ];
 
 /// The format named `name`.

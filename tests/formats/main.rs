@@ -29,6 +29,10 @@ const BLOCK: Shapes = &[(Triangle, 258)];
 /// Two of each.
 const LINEAR: Shapes =
     &[(Triangle, 2), (Quadrilateral, 2), (Tetrahedron, 2), (Pyramid, 2), (Wedge, 2), (Hexahedron, 2)];
+const LINEAR_TWICE: Shapes =
+    &[(Triangle, 4), (Quadrilateral, 4), (Tetrahedron, 4), (Pyramid, 4), (Wedge, 4), (Hexahedron, 4)];
+const NO_QUADRILATERALS: Shapes =
+    &[(Triangle, 2), (Tetrahedron, 2), (Pyramid, 2), (Wedge, 2), (Hexahedron, 2)];
 /// Every cell type of VTK.
 const ALL: Shapes =
     &[(Triangle, 7), (Quadrilateral, 9), (Tetrahedron, 4), (Pyramid, 3), (Wedge, 6), (Hexahedron, 7)];
@@ -66,6 +70,8 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("nastran", "gmsh_mixed_free.bdf", 54, MIXED, 0),
     ("nastran", "gmsh_mixed_large.bdf", 54, MIXED, 0),
     ("matlab", "scipy_pit2d_o2_struct.mat", 821, PIT, 0),
+    ("matlab", "scipy_pit2d_v4.mat", 220, PIT, 56),
+    ("matlab", "v73_pit2d_struct.mat", 220, PIT, 0),
     ("matlab", "scipy_pit2d_pet_compressed.mat", 220, PIT, 56),
     ("obj", "gmsh_pit_block.obj", 131, BLOCK, 0),
     ("obj", "meshio_mixed.obj", 54, FACES, 0),
@@ -100,6 +106,25 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("exodus", "mixed_cdf1.e", 54, MIXED, 0),
     ("exodus", "mixed_cdf2_map.e", 54, MIXED, 0),
     ("exodus", "mixed_cdf5_results.e", 54, MIXED, 0),
+    ("exodus", "meshio_mixed.e", 54, MIXED, 0),
+    ("exodus", "mixed_hdf5_earliest.e", 54, MIXED, 0),
+    ("exodus", "mixed_hdf5_latest.e", 54, MIXED, 0),
+    ("exodus", "mixed_netcdf4.e", 54, MIXED, 0),
+    ("exodus", "mixed_netcdf4_packed.e", 54, MIXED, 0),
+    ("med", "gmsh_mixed.med", 54, MIXED, 0),
+    ("med", "gmsh_pit2d.med", 220, PIT, 56),
+    ("med", "meshio_mixed.med", 54, MIXED, 0),
+    ("cgns", "gmsh_mixed.cgns", 54, MIXED, 0),
+    ("cgns", "gmsh_pit2d.cgns", 220, PIT, 56),
+    ("cgns", "mixed_sections.cgns", 54, MIXED, 0),
+    ("cgns", "two_zones_ngon.cgns", 24, &[(Hexahedron, 4)], 11),
+    ("vtkhdf", "vtk_all.vtkhdf", 452, ALL, 14),
+    ("vtkhdf", "vtk_collection.vtkhdf", 110, LINEAR_TWICE, 0),
+    ("vtkhdf", "vtk_linear.vtkhdf", 55, LINEAR, 0),
+    ("vtkhdf", "vtk_surface.vtkhdf", 55, &[(Triangle, 22), (Quadrilateral, 22)], 0),
+    ("xdmf", "meshio_mixed_hdf.xdmf", 54, MIXED, 0),
+    ("xdmf", "meshio_mixed_xml.xdmf", 54, MIXED, 0),
+    ("xdmf", "vtk_solids.xmf", 47, NO_QUADRILATERALS, 0),
 ];
 
 fn folder(format: &str) -> PathBuf {
@@ -121,8 +146,9 @@ fn every_format_has_real_meshes_with_known_counts() {
         let entries =
             fs::read_dir(folder(format.name())).unwrap_or_else(|e| panic!("{}: {e}", format.name()));
         let names = entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
-        let meshes: BTreeSet<_> =
-            names.filter(|name| !(name.ends_with(".jsonl") || name.ends_with(".node"))).collect();
+        let meshes: BTreeSet<_> = names
+            .filter(|name| ![".jsonl", ".node", ".h5"].iter().any(|ending| name.ends_with(ending)))
+            .collect();
         let rows = OWN.iter().filter(|row| row.0 == format.name());
         assert_eq!(meshes, rows.map(|row| row.1.to_owned()).collect(), "{}", format.name());
         assert!(!meshes.is_empty(), "{}", format.name());
@@ -145,7 +171,7 @@ fn the_content_decides_whatever_the_name_says() {
     for (format, name, nodes, ..) in OWN.iter().filter(|row| !folder(row.0).join(row.1).is_dir()) {
         let bytes = fs::read(folder(format).join(name)).expect("readable");
         // The nodes of these stand in a file of the same name.
-        let has_companion = matches!(*format, "triangle" | "tetgen");
+        let has_companion = matches!(*format, "triangle" | "tetgen") || name.contains("hdf.xdmf");
         let wrong_names: &[&str] = if has_companion { &[] } else { &["x.inp", "x.txt", "x.msh.gz", "x"] };
         for wrong in wrong_names {
             let path = elsewhere.path().join(wrong);

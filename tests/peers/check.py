@@ -28,7 +28,7 @@ BINS = 100
 QUANTILE = 2.0 / 1024
 # The mesh by which the check itself is checked: all shapes, and no ties that would let a wrong figure pass.
 SEEN = "vtk-flawed.vtu"
-VTK_FORMATS = ("vtk", "vtu")
+VTK_FORMATS = ("vtk", "vtu", "vtkhdf")
 ORDERING = ("M32", "M34", "M31", "M33")
 
 

@@ -17,7 +17,10 @@ import zstandard
 from meshio._mesh import topological_dimension
 from meshio._vtk_common import meshio_to_vtk_order, meshio_to_vtk_type
 from meshio.abaqus._abaqus import meshio_to_abaqus_type
+from meshio.exodus._exodus import meshio_to_exodus_type
 from meshio.gmsh import meshio_to_gmsh_type
+from meshio.med._med import meshio_to_med_type
+from meshio.xdmf.common import meshio_to_xdmf_type
 from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 
 import models
@@ -205,6 +208,15 @@ def write_vtu(path, grid, mode="raw", compressor="None", header="UInt32", order=
     assert writer.Write() == 1, path
 
 
+def write_hdf(path, grid, packed):
+    writer = vtk.vtkHDFWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(grid)
+    writer.SetChunkSize(1000)
+    writer.SetCompressionLevel(packed)
+    assert writer.Write() == 1, path
+
+
 def from_vtk(folder, meshes):
     chosen = {name: vtk_ordered(meshes[name]).relabelled(0) for name in
               ("specimen", "specimen-2", "extruded", "extruded-2", "transition", "transition-2", "shell-2", "flawed")}
@@ -231,6 +243,10 @@ def from_vtk(folder, meshes):
         path = folder / f"vtk-{name}.vtu"
         write_vtu(path, vtk_grid(mesh, code=coded), compressor="ZLib")
         yield Case(path, mesh)
+        for ending, packed in (("", 0), ("-packed", 4)):
+            path = folder / f"vtk-{name}{ending}.vtkhdf"
+            write_hdf(path, vtk_grid(mesh, code=coded), packed)
+            yield Case(path, mesh)
     yield from vtu_encodings(folder, chosen["extruded-2"])
     yield from vtu_pieces(folder, chosen["transition"])
 
@@ -304,8 +320,14 @@ MESHIO = {
     "zlib64.vtu": dict(file_format="vtu", binary=True, compression="zlib", header_type="UInt64"),
     "lzma.vtu": dict(file_format="vtu", binary=True, compression="lzma"),
     ".inp": dict(file_format="abaqus"),
+    ".e": dict(file_format="exodus"),
+    ".med": dict(file_format="med"),
+    "hdf.xdmf": dict(file_format="xdmf", data_format="HDF"),
+    "xml.xdmf": dict(file_format="xdmf", data_format="XML"),
+    "binary.xdmf": dict(file_format="xdmf", data_format="Binary"),
 }
-KNOWN = {"msh": meshio_to_gmsh_type, "vtk": meshio_to_vtk_type, "vtu": meshio_to_vtk_type, "inp": meshio_to_abaqus_type}
+KNOWN = {"msh": meshio_to_gmsh_type, "vtk": meshio_to_vtk_type, "vtu": meshio_to_vtk_type, "inp": meshio_to_abaqus_type,
+         "e": meshio_to_exodus_type, "med": meshio_to_med_type, "xdmf": meshio_to_xdmf_type}
 
 
 def held(mesh, ending):
@@ -322,7 +344,8 @@ def from_meshio(folder, meshes):
     for name in ("pit", "pit-2", "specimen", "specimen-2", "extruded", "extruded-2", "extruded-complete", "transition",
                  "transition-2", "transition-complete", "shell", "flawed", "large"):
         for ending, options in MESHIO.items():
-            if name == "large" and ending not in ("41-binary.msh", "51-binary.vtk", "zlib.vtu", ".inp"):
+            if name == "large" and ending not in ("41-binary.msh", "51-binary.vtk", "zlib.vtu", ".inp",
+                                                          ".e", "hdf.xdmf"):
                 continue
             extension = ending.split(".")[-1]
             written = only(vtk_ordered(meshes[name]), lambda b: cell_name(b) in KNOWN[extension]

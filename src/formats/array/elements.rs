@@ -56,7 +56,7 @@ impl NodeRange {
                 let expected = format!("a node's number from {first} to {last}");
                 return Err(wrong_node(label, ids, &expected, |id| id < first || id > last));
             }
-            ids.iter_mut().for_each(|id| *id += self.offset);
+            ids.iter_mut().for_each(|id| *id = id.wrapping_add(self.offset));
         }
         Ok(())
     }

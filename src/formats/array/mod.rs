@@ -1,5 +1,6 @@
 //! Arrays of equal numbers, read through windows wherever they stand, and the nodes and elements that arrays hold.
 
+pub mod coded;
 pub mod elements;
 pub mod nodes;
 pub mod table;
@@ -64,6 +65,8 @@ pub enum Origin {
     },
     /// It was unpacked from what the tag at this byte holds.
     Tag(u64),
+    /// It was unpacked from what the record at this byte of binary data describes.
+    Record(u64),
 }
 
 /// What has been unpacked of a file so far. All of it goes to one scratch file: a mesh may have very many pieces.
@@ -123,7 +126,7 @@ impl Stores {
     pub fn array(&self, stored: Stored, name: &str) -> Result<Array> {
         let source = if matches!(stored.origin, Origin::File) { &self.file } else { &self.scratch };
         check_fits(source, &stored, name)?;
-        Ok(Array { source: Arc::clone(source), stored })
+        Ok(Array { source: Arc::clone(source), stored, file: None })
     }
 }
 
@@ -145,6 +148,8 @@ pub fn check_fits(source: &Source, stored: &Stored, name: &str) -> Result<u64> {
 pub struct Array {
     source: Arc<Source>,
     stored: Stored,
+    /// The file that it was unpacked from, where it is not the mesh file.
+    file: Option<Arc<Source>>,
 }
 
 macro_rules! convert {
@@ -175,6 +180,21 @@ macro_rules! convert_any {
 }
 
 impl Array {
+    /// The array that stands in the file itself, every byte of it.
+    pub fn in_file(file: &Arc<Source>, stored: Stored) -> Self {
+        Self { source: Arc::clone(file), stored, file: None }
+    }
+
+    /// The file that errors are to name.
+    pub fn source(&self) -> &Arc<Source> {
+        self.file.as_ref().unwrap_or(&self.source)
+    }
+
+    /// The array, with the file that it was unpacked from.
+    pub fn of_file(self, file: &Arc<Source>) -> Self {
+        Self { file: Some(Arc::clone(file)), ..self }
+    }
+
     /// Number of numbers.
     pub fn len(&self) -> u64 {
         self.stored.count
@@ -190,7 +210,7 @@ impl Array {
         let end = range.end.min(self.len());
         let start = range.start.min(end);
         let at = self.stored.at + start * self.width();
-        Self { stored: Stored { at, count: end - start, ..self.stored }, source: Arc::clone(&self.source) }
+        Self { stored: Stored { at, count: end - start, ..self.stored }, ..self.clone() }
     }
 
     /// The array without its first number.
@@ -210,6 +230,7 @@ impl Array {
             Origin::File => Spot::Binary(at),
             Origin::Text { from, base } => Spot::Token { from, number: (at - base) / self.width() },
             Origin::Tag(at) => Spot::Text(at),
+            Origin::Record(at) => Spot::Binary(at),
         }
     }
 

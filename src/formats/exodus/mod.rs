@@ -14,9 +14,8 @@ use crate::formats::array::elements::{Elements, Labels, NodeRange, UsedNodes};
 use crate::formats::array::nodes::Coordinates;
 use crate::formats::array::table::Table;
 use crate::formats::array::{Array, Stored, Stores, Unpacked};
-use crate::formats::netcdf::classic::{self, Classic};
-use crate::formats::netcdf::{Variable, Variables};
-use crate::formats::{Format, Outline};
+use crate::formats::netcdf::{self, Variable, Variables};
+use crate::formats::{Format, HEAD_BYTES, Outline};
 use crate::input::{Input, Spot};
 use crate::mesh::ElementType;
 
@@ -32,7 +31,7 @@ impl Format for Exodus {
     }
 
     fn title(&self) -> &'static str {
-        "Exodus II in NetCDF files of the classic kinds: CDF-1, CDF-2 and CDF-5"
+        "Exodus II in NetCDF files: CDF-1, CDF-2, CDF-5 and NetCDF-4"
     }
 
     fn extensions(&self) -> &'static [&'static str] {
@@ -44,13 +43,21 @@ impl Format for Exodus {
     }
 
     fn detect(&self, head: &[u8]) -> bool {
-        let names = ["num_nodes", "num_dim"];
-        classic::detect(head)
-            && names.iter().all(|name| memchr::memmem::find(head, name.as_bytes()).is_some())
+        let names: [&[u8]; 2] = [b"num_nodes", b"num_dim"];
+        netcdf::detect(head) && names.iter().all(|name| memchr::memmem::find(head, name).is_some())
+    }
+
+    fn knows(&self, input: &Input) -> bool {
+        let head = input.source.peek(0..HEAD_BYTES as u64);
+        let has_mesh = |file: &dyn Variables| {
+            Ok(file.find("num_nodes").is_some()
+                && ["coord", "coordx"].iter().any(|name| file.find(name).is_some()))
+        };
+        self.detect(head) || netcdf::detect(head) && netcdf::open(input, has_mesh).unwrap_or(false)
     }
 
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
-        outline(input, &Classic::open(&input.source)?, out)
+        netcdf::open(input, |file| outline(input, file, out))
     }
 }
 

@@ -4,9 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::choose;
-use super::store::{Matrix, Number, Numbers, leaf};
+use super::store::{Matrix, leaf};
 use super::unpack::unpack;
 use crate::error::{Error, Result};
+use crate::formats::array::{Array, Number, Origin, Stored};
 use crate::formats::binary::Endian;
 use crate::input::{Input, Source, Spot};
 
@@ -17,8 +18,8 @@ const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 /// Limits, each with its own error.
 const MOST_VARIABLES: usize = 100_000;
-const MOST_MATRICES: usize = 10_000;
-const MOST_DEPTH: usize = 16;
+pub(super) const MOST_MATRICES: usize = 10_000;
+pub(super) const MOST_DEPTH: usize = 16;
 /// Most bytes of a name, of the names of a structure's fields, or of a matrix's sizes.
 const MOST_NAMES: u64 = 256 << 10;
 /// Most variables that an error lists.
@@ -34,7 +35,7 @@ pub(super) struct Contents {
 }
 
 impl Contents {
-    fn other(&mut self, path: &str, what: &str) {
+    pub(super) fn other(&mut self, path: &str, what: &str) {
         if self.others.len() < MOST_OTHERS {
             self.others.push(format!("{path} ({what})"));
         }
@@ -109,10 +110,6 @@ pub(super) fn read(input: &Input) -> Result<Contents> {
 /// Reads the header; gives the byte order.
 fn header(source: &Source) -> Result<Endian> {
     let head = source.peek(0..HEADER);
-    if head.starts_with(b"MATLAB 7.3") {
-        let what = "MAT-files of version 7.3 (HDF5) are not read yet: save with -v7";
-        return Err(source.place(Error::unsupported(what), Spot::Binary(0)));
-    }
     match head.get(124..128) {
         None => Err(source.truncated("a header of 128 bytes")),
         Some([0, 1, b'I', b'M']) => Ok(Endian::Little),
@@ -302,7 +299,7 @@ impl Walk<'_> {
     fn numbers(&self, range: Range<u64>, path: String, sizes: &[u64], found: &mut Contents) -> Result<()> {
         let &[rows, columns] = sizes else { return Ok(()) };
         let tag = self.tag(range.start, range.end)?;
-        let Some(number) = Number::of_tag(tag.kind) else {
+        let Some(number) = number_of_tag(tag.kind) else {
             return Err(self.malformed(range.start, "numbers", format!("type {}", tag.kind)));
         };
         let bytes = rows.checked_mul(columns).and_then(|count| count.checked_mul(number.width()));
@@ -313,8 +310,10 @@ impl Walk<'_> {
         if found.matrices.len() >= MOST_MATRICES {
             return Err(Error::limit("number of matrices that may be of a mesh", MOST_MATRICES));
         }
-        let (source, in_file, endian) = (Arc::clone(self.source), self.in_file, self.endian);
-        let numbers = Numbers { source, in_file, at: tag.data.start, number, endian };
+        let origin = if self.in_file { Origin::File } else { Origin::Record(self.origin) };
+        let stored =
+            Stored { origin, at: tag.data.start, number, endian: self.endian, count: rows * columns };
+        let numbers = Array::in_file(self.source, stored);
         found.matrices.push(Matrix { path, rows, columns, numbers });
         Ok(())
     }
@@ -372,6 +371,24 @@ impl Walk<'_> {
         }
         Ok(())
     }
+}
+
+/// The type of numbers with the tag of a data element. MATLAB packs whole numbers into the smallest type: the class of an
+/// array says nothing about it.
+fn number_of_tag(tag: u32) -> Option<Number> {
+    Some(match tag {
+        1 => Number::I8,
+        2 => Number::U8,
+        3 => Number::I16,
+        4 => Number::U16,
+        5 => Number::I32,
+        6 => Number::U32,
+        7 => Number::F32,
+        9 => Number::F64,
+        12 => Number::I64,
+        13 => Number::U64,
+        _ => return None,
+    })
 }
 
 /// The number of entries of an array. Each takes eight bytes or more, so that a false one is noticed soon.

@@ -1,4 +1,4 @@
-//! MATLAB's MAT-files of version 5 (`save` without `-v7.3`), with a mesh of the PDE toolbox (`p`, `e`, `t`), of a mesh
+//! MATLAB's MAT-files of versions 4, 5 and 7.3 (an HDF5 file), with a mesh of the PDE toolbox (`p`, `e`, `t`), of a mesh
 //! object's arrays (`Nodes`, `Elements`) or of names like these, alone or in structures and cells, either way up.
 
 mod choose;
@@ -7,16 +7,23 @@ mod store;
 #[cfg(test)]
 mod tests;
 mod unpack;
+mod version4;
+#[cfg(feature = "hdf5")]
+mod version73;
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
-use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, Piece};
+use crate::formats::{ElementLayout, ElementSink, Format, HEAD_BYTES, NodeBatch, NodeLayout, Outline, Piece};
 use crate::input::{Input, Source, Spot};
 use choose::{Choice, Group};
+use contents::Contents;
 use store::Records;
+
+/// What a file of version 7.3 starts with, before the HDF5 file in it.
+const HDF5: &[u8] = b"MATLAB 7.3 MAT-file";
 
 /// The format's row in the table of formats.
 pub(super) struct Matlab;
@@ -27,7 +34,7 @@ impl Format for Matlab {
     }
 
     fn title(&self) -> &'static str {
-        "MATLAB MAT-files of version 5, plain or compressed: p, e, t or Nodes, Elements"
+        "MATLAB MAT-files of versions 4, 5 and 7.3, plain or compressed: p, e, t or Nodes, Elements"
     }
 
     fn extensions(&self) -> &'static [&'static str] {
@@ -35,17 +42,18 @@ impl Format for Matlab {
     }
 
     fn looks_for(&self) -> &'static str {
-        "MATLAB 5.0 MAT-file"
+        "MATLAB 5.0 MAT-file, MATLAB 7.3 MAT-file, or the head of a matrix of version 4"
     }
 
     fn detect(&self, head: &[u8]) -> bool {
-        head.starts_with(b"MATLAB 5.0 MAT-file") || head.starts_with(b"MATLAB 7.3 MAT-file")
+        head.starts_with(b"MATLAB 5.0 MAT-file") || head.starts_with(HDF5) || version4::detect(head)
     }
 
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let source = &input.source;
+        let contents = read(input)?;
         let Choice { points, groups, edges } =
-            choose::choose(contents::read(input)?).map_err(|e| source.place(e, Spot::Binary(0)))?;
+            choose::choose(contents).map_err(|e| source.place(e, Spot::Binary(0)))?;
         let (count, width) = (points.count(), 8 * points.width() as u64);
         let layout = Arc::new(Points { source: Arc::clone(source), records: points });
         cut_records(count, width, |span| out.nodes(Piece { layout: layout.clone(), span }))?;
@@ -61,6 +69,23 @@ impl Format for Matlab {
             None => Ok(()),
         }
     }
+}
+
+/// What the file holds, whatever its version.
+fn read(input: &Input) -> Result<Contents> {
+    let head = input.source.peek(0..HEAD_BYTES as u64);
+    if head.starts_with(HDF5) {
+        #[cfg(feature = "hdf5")]
+        return version73::read(input);
+        #[cfg(not(feature = "hdf5"))]
+        return Err(input.source.place(
+            Error::unsupported(
+                "MAT-files of version 7.3 (HDF5) are not read: this program was built without",
+            ),
+            Spot::Binary(0),
+        ));
+    }
+    if version4::detect(head) { version4::read(&input.source) } else { contents::read(input) }
 }
 
 /// Points; a span is a range of their numbers, from 0.

@@ -1,9 +1,36 @@
-//! NetCDF files: variables by name, in the classic container ([`classic`]: CDF-1, CDF-2, CDF-5).
+//! NetCDF files: variables by name, in the classic container ([`classic`]: CDF-1, CDF-2, CDF-5) or in HDF5 (NetCDF-4).
 
 pub mod classic;
+#[cfg(feature = "hdf5")]
+pub mod hdf5;
 
 use crate::error::Result;
+#[cfg(feature = "hdf5")]
+use crate::formats::HEAD_BYTES;
 use crate::formats::array::{Stored, Unpacked};
+use crate::input::Input;
+
+/// Whether a file starts as one does that may be NetCDF.
+pub fn detect(head: &[u8]) -> bool {
+    classic::detect(head) || is_hdf5(head)
+}
+
+/// Opens a file and shows its variables.
+pub fn open<T>(input: &Input, see: impl FnOnce(&dyn Variables) -> Result<T>) -> Result<T> {
+    #[cfg(feature = "hdf5")]
+    if is_hdf5(input.source.peek(0..HEAD_BYTES as u64)) {
+        let file = crate::formats::hdf5::Hdf5::open(input)?;
+        return see(&hdf5::NetCdf4::new(input, &file)?);
+    }
+    see(&classic::Classic::open(&input.source)?)
+}
+
+#[cfg(feature = "hdf5")]
+use crate::formats::hdf5::detect as is_hdf5;
+#[cfg(not(feature = "hdf5"))]
+fn is_hdf5(_: &[u8]) -> bool {
+    false
+}
 
 /// A variable.
 #[derive(Debug, Clone)]

@@ -50,12 +50,18 @@ impl Tag {
 pub struct Tags<'i> {
     source: &'i Source,
     at: u64,
+    passes_doctype: bool,
 }
 
 impl<'i> Tags<'i> {
     /// From the start of the file.
     pub fn new(input: &'i Input) -> Self {
-        Self { source: &input.source, at: 0 }
+        Self { source: &input.source, at: 0, passes_doctype: false }
+    }
+
+    /// Passes over a document type, too. Entities that it defines remain unknown.
+    pub fn passing_doctype(self) -> Self {
+        Self { passes_doctype: true, ..self }
     }
 
     /// The next tag; `None` at the end of the file. Comments and processing instructions are passed over.
@@ -66,6 +72,10 @@ impl<'i> Tags<'i> {
                 self.at = self.after(b"-->", at + 4)?;
             } else if head.starts_with(b"<?") {
                 self.at = self.after(b"?>", at + 2)?;
+            } else if self.passes_doctype && self.source.peek(at..at + 9) == b"<!DOCTYPE" {
+                let (mark, subset) = (self.after(b">", at)?, self.find(b"[", at));
+                let has_subset = subset.is_some_and(|subset| subset < mark);
+                self.at = if has_subset { self.after(b"]>", at)? } else { mark };
             } else if head.starts_with(b"<!") {
                 return Err(self.source.malformed_text(at, "a tag"));
             } else {

@@ -10,17 +10,21 @@
 //! triangles the other way round, and writers of both kinds are about. Corners are kept as they stand; the sign of a
 //! wedge's volume means something only against the other wedges of its mesh.
 
-mod ascii;
+pub(super) mod ascii;
 mod cells;
+#[cfg(feature = "hdf5")]
+mod hdf;
 mod layout;
 mod legacy;
-mod markup;
+pub(super) mod markup;
 mod payload;
-mod role;
+pub(super) mod role;
 mod vtu;
 
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "hdf5")]
+pub use hdf::VtkHdf;
 pub use legacy::Legacy;
 pub use vtu::Vtu;
