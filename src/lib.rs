@@ -16,6 +16,7 @@
 //!
 //! ```text
 //! pipeline    report      generate      the only threads and channels; text; model problems
+//! compare                               two summaries beside each other
 //! formats     measures    statistics    bytes to elements; coordinates to scores; scores to moments and bins
 //! summary     mesh        input         the schema; shapes, chunks, the node table; mapped and unpacked files
 //! error                                 one error type, with a place in the file
@@ -24,6 +25,7 @@
 //! The library writes nothing to standard output, never exits, and builds without the program's dependencies
 //! (`--no-default-features`). What it promises is listed in ARCHITECTURE.md, each promise with the test that holds it.
 
+pub mod compare;
 pub mod error;
 pub mod formats;
 pub mod generate;

@@ -12,9 +12,10 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("formats", &["error", "input", "mesh"]),
     ("measures", &["mesh"]),
     ("statistics", &[]),
-    ("summary", &["mesh"]),
+    ("summary", &["error", "mesh"]),
+    ("compare", &["mesh", "measures", "statistics", "summary"]),
     ("pipeline", &["error", "input", "mesh", "formats", "measures", "statistics", "summary"]),
-    ("report", &["mesh", "measures", "summary"]),
+    ("report", &["mesh", "measures", "summary", "compare"]),
     ("generate", &["error", "mesh"]),
 ];
 

@@ -2,6 +2,7 @@
 //!
 //! Names come out of mesh files, so every report makes them harmless: no control character reaches a terminal.
 
+mod comparison;
 mod csv;
 mod head;
 mod json;
@@ -14,17 +15,18 @@ mod table;
 
 use std::io::{self, Write};
 
+use crate::compare::Comparisons;
 use crate::summary::Summary;
 
-/// One way of writing summaries.
+/// One way of writing summaries, or what they are compared to.
 #[derive(Debug)]
-pub struct Report {
+pub struct Report<T: ?Sized = [Summary]> {
     /// The name that users choose it by.
     pub name: &'static str,
     /// What it is, in one line.
     pub title: &'static str,
-    /// Writes the summaries.
-    pub render: fn(&[Summary], &Style, &mut dyn Write) -> io::Result<()>,
+    /// Writes it.
+    pub render: fn(&T, &Style, &mut dyn Write) -> io::Result<()>,
 }
 
 /// How a report for people shall look.
@@ -43,6 +45,17 @@ pub const REPORTS: &[Report] = &[
     Report { name: "jsonl", title: "the summaries, one a line", render: json::render_lines },
     Report { name: "csv", title: "one row for each mesh, shape and measure", render: csv::render },
     Report { name: "markdown", title: "tables for a comment on a merge request", render: markdown::render },
+];
+
+/// Every report on a comparison; the first is for people.
+pub const COMPARISONS: &[Report<Comparisons>] = &[
+    Report {
+        name: "table",
+        title: "what got better and what got worse, for a terminal",
+        render: comparison::table,
+    },
+    Report { name: "json", title: "every statistic of every mesh", render: comparison::json },
+    Report { name: "markdown", title: "a comment on a merge request", render: comparison::markdown },
 ];
 
 /// The report of that name.

@@ -48,13 +48,8 @@ fn head_table(summary: &Summary, style: &Style) -> comfy_table::Table {
 }
 
 fn measures(found: &layout::Table, style: &Style) -> comfy_table::Table {
-    let mut table = comfy_table::Table::new();
-    let rule = TableStyle::new()
-        .header_lines(ContentLineStyle::none())
-        .header_separator(LineStyle::none().fill('─').junction('─'));
-    table.load_style(rule).set_content_arrangement(ContentArrangement::Disabled);
     let columns = layout::COLUMNS.map(|name| name.replace(' ', "\n"));
-    table.set_header(["mesh", "measure"].map(str::to_owned).into_iter().chain(columns));
+    let mut table = ruled(["mesh", "measure"].map(str::to_owned).into_iter().chain(columns));
     let width = style.width.map(|width| width.saturating_sub(BESIDES_MESH).max(SHORTEST_NAME));
     table.add_rows(found.rows.iter().map(|row| cells(row, width)));
     for (i, column) in table.column_iter_mut().enumerate() {
@@ -63,6 +58,17 @@ fn measures(found: &layout::Table, style: &Style) -> comfy_table::Table {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
+    table
+}
+
+/// An empty table with a line under its header and no other.
+pub(super) fn ruled<T: Into<comfy_table::Cell>>(header: impl Iterator<Item = T>) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
+    let rule = TableStyle::new()
+        .header_lines(ContentLineStyle::none())
+        .header_separator(LineStyle::none().fill('─').junction('─'));
+    table.load_style(rule).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header);
     table
 }
 
@@ -90,7 +96,8 @@ fn shortened(name: &str, width: usize) -> String {
     name.chars().take(start).chain(['…']).chain(name.chars().skip(length - end)).collect()
 }
 
-fn write_lines(table: &comfy_table::Table, out: &mut dyn Write) -> io::Result<()> {
+/// The lines of a table, without blanks at their ends.
+pub(super) fn write_lines(table: &comfy_table::Table, out: &mut dyn Write) -> io::Result<()> {
     for line in table.lines() {
         writeln!(out, "{}", line.trim_end())?;
     }
@@ -106,11 +113,11 @@ fn colored(status: Status, style: &Style) -> String {
     ansi(color, status.name(), style)
 }
 
-fn bold(text: &str, style: &Style) -> String {
+pub(super) fn bold(text: &str, style: &Style) -> String {
     ansi("1", text, style)
 }
 
 /// The text under an SGR code, where the style has colour.
-fn ansi(code: &str, text: &str, style: &Style) -> String {
+pub(super) fn ansi(code: &str, text: &str, style: &Style) -> String {
     if style.color { format!("\u{1b}[{code}m{text}\u{1b}[0m") } else { text.to_owned() }
 }

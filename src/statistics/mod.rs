@@ -4,11 +4,13 @@
 //! its own. Means, deviations and co-moments are doubles, whose last bits depend on the order: they are merged in the
 //! order of the file, along a tree that does not depend on threads.
 
+mod distance;
 mod distribution;
 mod moments;
 mod spread;
 mod tree;
 
+pub use distance::{Shift, shift};
 pub use distribution::{BINS, Distribution};
 pub use moments::{Extremes, MOST, Moments, sum};
 pub use spread::{QUANTILES, Spread};

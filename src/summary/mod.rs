@@ -5,6 +5,7 @@
 //! threads and the memory budget; `run` alone differs.
 
 mod checks;
+mod reading;
 mod rule;
 mod verdict;
 

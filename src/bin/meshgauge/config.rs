@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use meshgauge::Options;
+use meshgauge::compare::{Tolerance, Tolerances};
 use meshgauge::summary::{Judgement, PRESETS, Rule};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,8 @@ pub struct Config {
     pub score: Score,
     /// What makes a mesh fail.
     pub verdict: Verdict,
+    /// How much may change between two meshes.
+    pub compare: Compare,
     /// Limits that guard the machine.
     pub limits: Limits,
     /// The daemon.
@@ -57,6 +60,21 @@ pub struct Verdict {
     pub preset: String,
     pub fail_under: BTreeMap<String, f64>,
     pub rules: Vec<rules::Row>,
+}
+
+/// `[compare]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Compare {
+    pub minimum: Tolerance,
+    pub mean: Tolerance,
+    pub quantile: Tolerance,
+    pub distance: f64,
+    pub under: f64,
+    pub checks: f64,
+    pub volume: f64,
+    pub size: f64,
 }
 
 /// `[limits]`
@@ -168,6 +186,30 @@ impl Default for Verdict {
     }
 }
 
+impl Default for Compare {
+    fn default() -> Self {
+        let Tolerances { minimum, mean, quantile, distance, under, checks, volume, size } =
+            Tolerances::default();
+        Self { minimum, mean, quantile, distance, under, checks, volume, size }
+    }
+}
+
+impl Compare {
+    /// The tolerances as the library takes them.
+    pub fn tolerances(&self) -> Tolerances {
+        let &Self { minimum, mean, quantile, distance, under, checks, volume, size } = self;
+        Tolerances { minimum, mean, quantile, distance, under, checks, volume, size }
+    }
+
+    /// Whether every tolerance is a number from 0 up.
+    fn is_sound(&self) -> bool {
+        let pairs = [self.minimum, self.mean, self.quantile];
+        let single = [self.distance, self.under, self.checks, self.volume, self.size];
+        let all = pairs.into_iter().flat_map(|pair| [pair.absolute, pair.relative]).chain(single);
+        all.into_iter().all(|number| number.is_finite() && number >= 0.0)
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         let limits = meshgauge::input::Limits::default();
@@ -258,6 +300,7 @@ impl Config {
         self.telemetry.address()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
         let wrong = [
+            (!self.compare.is_sound(), "compare: tolerances are numbers from 0 up".to_owned()),
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
             (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),
             (self.watch.depth == 0, "watch.depth must be at least 1".to_owned()),

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod compare;
 mod completions;
 mod config;
 mod formats;
@@ -37,7 +38,7 @@ pub struct Cli {
 const EXIT_STATUS: &str = "\
 Exit status:
   0  fine; a warning is fine
-  1  scored, but a threshold failed
+  1  scored, but a threshold or a comparison failed
   2  wrong usage or configuration
   3  a mesh could not be read
   4  out of a resource: disk, memory
@@ -48,6 +49,7 @@ enum Command {
     Score(score::Args),
     Watch(watch::Args),
     Status(status::Args),
+    Compare(compare::Args),
     Generate(generate::Args),
     Formats(formats::Args),
     Measures(measures::Args),
@@ -87,6 +89,11 @@ pub fn run(cli: Cli) -> anyhow::Result<Status> {
             watch::run(&args, config)
         }
         Command::Status(args) => status::run(&args),
+        Command::Compare(args) => {
+            let config = args.config()?;
+            start(&config);
+            compare::run(&args, &config)
+        }
         Command::Worker(args) => {
             start(&Config::default());
             worker::run(&args)

@@ -48,10 +48,8 @@ impl Output {
     }
 
     fn print(&self, summaries: &[Summary]) -> io::Result<()> {
-        let color = stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
-        let width = stdout().is_terminal().then(terminal_width).flatten();
         let mut out = stdout().lock();
-        (self.report.render)(summaries, &Style { color, width }, &mut out)?;
+        (self.report.render)(summaries, &style(), &mut out)?;
         out.flush()
     }
 
@@ -62,6 +60,12 @@ impl Output {
         out.write_all(b"\n")?;
         out.flush()
     }
+}
+
+/// How stdout wants it.
+pub fn style() -> Style {
+    let color = stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
+    Style { color, width: stdout().is_terminal().then(terminal_width).flatten() }
 }
 
 fn terminal_width() -> Option<u16> {
