@@ -1,6 +1,6 @@
 //! A cylinder on a polar grid, as finite-difference programs use it: the report's mesh FD1 by default.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::io;
 
 use super::parameter::{LENGTH, MAX_DIVISIONS};
@@ -32,7 +32,9 @@ pub(super) const MODEL: Model = Model {
             range: Range::Whole(1, MAX_DIVISIONS),
         },
     ],
-    source: |values| Box::new(FdCylinder::new(values)),
+    grows: &["strips", "rings", "layers"],
+    source: |values| Ok(Box::new(FdCylinder::new(values))),
+    exact: |values| PI * values.real("radius").powi(2) * values.real("height"),
 };
 
 struct FdCylinder {

@@ -1,6 +1,6 @@
 //! A disc as one mapped patch of quadrilaterals: the report's mesh FG2 by default.
 
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, PI};
 use std::io;
 
 use super::parameter::{LENGTH, MAX_DIVISIONS};
@@ -19,7 +19,9 @@ pub(super) const MODEL: Model = Model {
             range: Range::Whole(1, MAX_DIVISIONS),
         },
     ],
-    source: |values| Box::new(MappedDisc::new(values)),
+    grows: &["divisions"],
+    source: |values| Ok(Box::new(MappedDisc::new(values))),
+    exact: |values| PI * values.real("radius").powi(2),
 };
 
 struct MappedDisc {

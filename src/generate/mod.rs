@@ -14,10 +14,15 @@
 //! # Ok::<(), meshgauge::Error>(())
 //! ```
 
+mod bricks;
+mod disc;
 mod fd_cylinder;
 mod mapped_disc;
 mod parameter;
+mod pit_specimen;
 mod source;
+mod swept_cylinder;
+mod target;
 mod writers;
 
 use std::fmt;
@@ -26,6 +31,7 @@ use crate::error::{Error, Result};
 
 pub use parameter::{Parameter, Range, Values};
 pub use source::{Block, MeshSource, VisitElement, VisitNode};
+pub use target::Target;
 pub use writers::{Counts, Encoding, WRITERS, Writer, write_file, writer, writer_for};
 
 /// A model problem: a row of [`MODELS`].
@@ -37,12 +43,17 @@ pub struct Model {
     pub title: &'static str,
     /// What can be set; by default the mesh is the report's.
     pub parameters: &'static [Parameter],
-    /// The mesh for values that are within their ranges.
-    source: fn(&Values) -> Box<dyn MeshSource>,
+    /// The whole numbers that grow together when a mesh of a wanted size is asked for.
+    grows: &'static [&'static str],
+    /// The mesh for values that are within their ranges; an error where they do not fit together.
+    source: fn(&Values) -> Result<Box<dyn MeshSource>>,
+    /// Area or volume of what is meshed, by its formula and not by the mesh.
+    exact: fn(&Values) -> f64,
 }
 
 /// Every model problem.
-pub static MODELS: &[Model] = &[fd_cylinder::MODEL, mapped_disc::MODEL];
+pub static MODELS: &[Model] =
+    &[fd_cylinder::MODEL, mapped_disc::MODEL, swept_cylinder::MODEL, pit_specimen::MODEL];
 
 /// The model named `name`.
 pub fn model(name: &str) -> Result<&'static Model> {
@@ -55,8 +66,21 @@ pub fn model(name: &str) -> Result<&'static Model> {
 impl Model {
     /// The problem with the given settings, each `name=value`; what is not set has its default.
     pub fn problem<'a>(&'static self, settings: impl IntoIterator<Item = &'a str>) -> Result<Problem> {
-        let values = Values::parse(self.name, self.parameters, settings)?;
-        let mesh = (self.source)(&values);
+        self.set_up(Values::parse(self.name, self.parameters, settings)?)
+    }
+
+    /// The problem whose mesh comes nearest to `target`: the numbers of divisions that are not among the settings grow or
+    /// shrink together.
+    pub fn problem_near<'a>(
+        &'static self,
+        target: Target,
+        settings: impl IntoIterator<Item = &'a str>,
+    ) -> Result<Problem> {
+        target::nearest(self, Values::parse(self.name, self.parameters, settings)?, target)
+    }
+
+    fn set_up(&'static self, values: Values) -> Result<Problem> {
+        let mesh = (self.source)(&values)?;
         Ok(Problem { model: self, values, mesh })
     }
 }
@@ -72,6 +96,11 @@ impl Problem {
     /// The model that it is a case of.
     pub fn model(&self) -> &'static Model {
         self.model
+    }
+
+    /// Area or volume of the body itself, which its mesh approaches.
+    pub fn exact(&self) -> f64 {
+        (self.model.exact)(&self.values)
     }
 
     /// Its mesh, to walk through.

@@ -37,4 +37,9 @@ pub trait MeshSource: Send + Sync {
     fn elements(&self) -> u64 {
         self.blocks().iter().map(|block| block.elements).sum()
     }
+
+    /// The dimension of the mesh: that of its shapes.
+    fn dimension(&self) -> usize {
+        self.blocks().iter().map(|block| block.shape.dimension()).max().unwrap_or(3)
+    }
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 #![expect(clippy::disallowed_methods, reason = "the tests' own small files")]
 
+mod bodies;
 mod files;
 mod published;
 
@@ -50,6 +51,7 @@ fn dot(a: Point, b: Point) -> f64 {
 /// The Jacobian at each corner of an element, in the sense of Abaqus and Gmsh.
 fn corner_jacobians(shape: Shape, corners: &[Point]) -> Vec<f64> {
     let spokes: &[[usize; 3]] = match shape {
+        Shape::Tetrahedron => &[[1, 2, 3]],
         Shape::Quadrilateral => &[[1, 3, 3], [2, 0, 0], [3, 1, 1], [0, 2, 2]],
         Shape::Wedge => &[[1, 2, 3], [2, 0, 4], [0, 1, 5], [5, 4, 0], [3, 5, 1], [4, 3, 2]],
         Shape::Hexahedron => {
@@ -72,6 +74,19 @@ fn every_model_has_the_nodes_and_elements_that_it_says_and_all_are_sound() {
         problem("fd-cylinder", &["strips=7", "rings=4", "layers=3", "radius=1e-6", "height=1e3"]),
         problem("mapped-disc", &[]),
         problem("mapped-disc", &["divisions=1", "radius=0.5"]),
+        problem("swept-cylinder", &[]),
+        problem("swept-cylinder", &["divisions=1", "layers=1", "radius=1e9"]),
+        problem("swept-cylinder", &["elements=tetrahedra", "divisions=5", "layers=3"]),
+        problem("swept-cylinder", &["elements=wedges", "divisions=1", "layers=1"]),
+        problem("swept-cylinder", &["elements=wedges", "divisions=6"]),
+        problem("pit-specimen", &[]),
+        problem("pit-specimen", &["elements=hexahedra", "depth=0.1"]),
+        problem("pit-specimen", &["diameter=32", "depth=0.1", "divisions=5"]),
+        problem("pit-specimen", &["diameter=32", "elements=hexahedra", "divisions=1"]),
+        problem("pit-specimen", &["width=0.666", "divisions=9"]),
+        problem("pit-specimen", &["diameter=2", "length=0.8", "depth=0.16", "elements=hexahedra"]),
+        problem("pit-specimen", &["diameter=2", "length=0.1", "depth=0.02", "width=0.01"]),
+        problem("pit-specimen", &["diameter=2", "length=99", "depth=0.3", "width=0.15", "divisions=7"]),
     ];
     for model in MODELS {
         assert!(cases.iter().any(|case| case.model().name == model.name), "{} is not tried", model.name);
@@ -103,7 +118,10 @@ fn settings_out_of_place_are_named_with_what_is_allowed() {
         assert!(error.is_usage());
         error.to_string()
     };
-    assert_eq!(error("cube", &[]), "no model problem is named \"cube\"; there are fd-cylinder, mapped-disc");
+    assert_eq!(
+        error("cube", &[]),
+        "no model problem is named \"cube\"; there are fd-cylinder, mapped-disc, swept-cylinder, pit-specimen"
+    );
     assert_eq!(
         error("mapped-disc", &["rings=3"]),
         "mapped-disc has no parameter \"rings\"; it has radius, divisions"
@@ -125,4 +143,16 @@ fn settings_out_of_place_are_named_with_what_is_allowed() {
         "mapped-disc: expected a setting as name=value, found \"radius\""
     );
     assert_eq!(error("mapped-disc", &["radius=1", "radius=1"]), "mapped-disc: radius is set twice");
+    assert_eq!(
+        error("swept-cylinder", &["elements=pyramids"]),
+        "swept-cylinder: elements must be one of hexahedra, tetrahedra, wedges, found \"pyramids\""
+    );
+    assert_eq!(
+        error("pit-specimen", &["depth=0.5", "width=1.5"]),
+        "pit-specimen: width must be from half to twice the depth, 0.25 to 1, found 1.5"
+    );
+    assert_eq!(
+        error("pit-specimen", &["depth=1"]),
+        "pit-specimen: depth must be at most 0.3 of the specimen's radius and 0.2 of its length, here 0.96, found 1"
+    );
 }

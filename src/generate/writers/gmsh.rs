@@ -41,18 +41,12 @@ fn write(problem: &Problem, encoding: Encoding, out: &mut dyn Write) -> io::Resu
     elements(problem.mesh(), &mut out)
 }
 
-/// The dimension of a mesh: that of its shapes.
-fn dimension(mesh: &dyn MeshSource) -> i32 {
-    let largest = mesh.blocks().iter().map(|block| block.shape.dimension()).max();
-    if largest == Some(2) { 2 } else { 3 }
-}
-
 fn nodes(mesh: &dyn MeshSource, out: &mut Records<'_>) -> io::Result<()> {
     let count = mesh.nodes();
     out.open("$Nodes")?;
     out.sizes(&[1, count, 1, count])?;
     out.end()?;
-    out.ints(&[dimension(mesh), 1, 0])?;
+    out.ints(&[mesh.dimension() as i32, 1, 0])?;
     out.sizes(&[count])?;
     out.end()?;
     for tag in 1..=count {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use meshgauge::generate::{Encoding, MODELS, WRITERS, model, write_file};
+use meshgauge::generate::{Encoding, MODELS, Target, WRITERS, model, write_file};
 
 use crate::exit::Status;
 
@@ -21,6 +21,14 @@ pub struct Args {
     /// The file to write.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+
+    /// Choose the divisions so that there are about N elements (1e6 is a number too).
+    #[arg(long, value_name = "N", value_parser = count, conflicts_with = "nodes")]
+    elements: Option<u64>,
+
+    /// Choose the divisions so that there are about N nodes.
+    #[arg(long, value_name = "N", value_parser = count)]
+    nodes: Option<u64>,
 
     /// How the numbers stand in the file; by default as is usual in the format.
     #[arg(long, value_enum)]
@@ -47,7 +55,12 @@ enum Numbers {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Status> {
-    let problem = model(&args.model)?.problem(args.settings.iter().map(String::as_str))?;
+    let (model, settings) = (model(&args.model)?, args.settings.iter().map(String::as_str));
+    let target = args.nodes.map(Target::Nodes).or(args.elements.map(Target::Elements));
+    let problem = match target {
+        Some(target) => model.problem_near(target, settings)?,
+        None => model.problem(settings)?,
+    };
     let encoding = match args.encoding {
         None => Encoding::Default,
         Some(Numbers::Text) => Encoding::Text,
@@ -57,9 +70,20 @@ pub fn run(args: &Args) -> anyhow::Result<Status> {
     let counts = write_file(&problem, encoding, &args.output)?;
     if !args.quiet {
         let file = args.output.display();
-        eprintln!("{file}: {problem}; {} nodes, {} elements", counts.nodes, counts.elements);
+        let (nodes, elements, exact) = (counts.nodes, counts.elements, problem.exact());
+        let measure = if problem.mesh().dimension() == 2 { "area" } else { "volume" };
+        eprintln!("{file}: {problem}; {nodes} nodes, {elements} elements; true {measure} {exact}");
     }
     Ok(Status::Fine)
+}
+
+/// A number of nodes or elements: `25000`, `1e9`.
+fn count(text: &str) -> Result<u64, String> {
+    let number: Option<f64> = text.parse().ok();
+    match number.filter(|n| n.fract() == 0.0 && (1.0..=1e15).contains(n)) {
+        Some(number) => Ok(number as u64),
+        None => Err("expected a whole number from 1 to 1e15".into()),
+    }
 }
 
 /// The models with their parameters, and the formats.
@@ -69,7 +93,7 @@ fn catalogue() -> String {
     for model in MODELS {
         let _ = writeln!(text, "  {}: {}", model.name, model.title);
         for p in model.parameters {
-            let _ = writeln!(text, "    {}={}  {}, {}", p.name, p.default, p.meaning, p.range);
+            let _ = writeln!(text, "    {}={}  {}, {}", p.name, p.default_text(), p.meaning, p.range);
         }
     }
     text.push_str("Formats:\n");
