@@ -3,11 +3,13 @@
 mod chunk;
 mod column;
 mod element;
+mod frame;
 mod nodes;
 mod shape;
 
 pub use chunk::{CHUNK, Chunk, Origin};
 pub use column::{Column, ColumnBuilder};
 pub use element::{Class, ElementType, IN_ORDER};
+pub use frame::{Axis, Frame, System, three};
 pub use nodes::{Bounds, Nodes, NodesBuilder};
 pub use shape::{Facts, Shape};

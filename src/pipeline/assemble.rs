@@ -11,11 +11,12 @@ use crate::error::Result;
 use crate::formats::{FORMATS, Format, Ledger};
 use crate::input::{Input, mesh_name};
 use crate::measures::{self, Family};
-use crate::mesh::{Class, Nodes, Shape};
+use crate::mesh::{Class, Frame, Nodes, Shape};
 use crate::statistics::{Moments, Spread};
 use crate::summary::{
-    Bounds, Checks, Elements, Judgement, MeasureSummary, MeshFile, Nodes as NodeSummary, Range, Run, SCHEMA,
-    ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals, Verdict, rules,
+    Bounds, Checks, Elements, Frame as FrameSummary, Judgement, MeasureSummary, MeshFile,
+    Nodes as NodeSummary, Range, Run, SCHEMA, ShapeSummary, SizeSummary, Sizes, Status, Summary, Totals,
+    Verdict, rules,
 };
 
 /// Whether a shape is stored with negative orientation as a whole.
@@ -42,6 +43,7 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
         mesh: mesh_file(&found),
         nodes: node_summary(found.nodes),
         elements: elements(&found.merged.ledger),
+        frame: frame(&found.merged.shapes, options.frame),
         totals: totals(&shapes),
         sizes: Sizes { edge_length: None, element_size: None },
         checks: checks(&found, &reversed),
@@ -82,6 +84,13 @@ fn node_summary(nodes: &Nodes) -> NodeSummary {
         unused: nodes.unused(),
         bounds: (nodes.count() > 0).then_some(Bounds { min: bounds.min, max: bounds.max }),
     }
+}
+
+/// The frame, where it is not the file's own.
+fn frame(shapes: &ByShape, frame: Frame) -> Option<FrameSummary> {
+    let enclosing_axis = shapes.iter().flatten().map(|statistics| statistics.enclosing_axis).sum();
+    let Frame { system, stretch } = frame;
+    (frame != Frame::OWN).then_some(FrameSummary { system, stretch, enclosing_axis })
 }
 
 fn elements(ledger: &Ledger) -> Elements {

@@ -94,7 +94,7 @@ struct Worker<'a> {
 impl<'a> Worker<'a> {
     fn new(shared: &'a Shared<'a>, ends: Ends) -> Self {
         let bins = Bins::new(shared.nodes.bounds().diagonal(), &shared.options.judgement);
-        Self { shared, ends, work: Workspace::new(), bins }
+        Self { shared, ends, work: Workspace::new(shared.options.frame), bins }
     }
 
     /// Measures what others hand over and decodes pieces until there are none left.

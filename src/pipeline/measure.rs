@@ -7,7 +7,7 @@ use crate::measures::batch::{Wide, at_widest};
 use crate::measures::{
     self, Corner, Family, Geometry, LANES, Lanes, MOST_MEASURES, QuadrilateralFlaws, Subject,
 };
-use crate::mesh::{CHUNK, Chunk, Nodes, Origin, Shape};
+use crate::mesh::{CHUNK, Chunk, Frame, Nodes, Origin, Shape};
 use crate::statistics::{Distribution, MOST, Moments, Spread, sum};
 use crate::summary::Judgement;
 
@@ -39,6 +39,8 @@ pub(super) struct ShapeStatistics {
     pub concave: u64,
     /// Quadrilateral faces two of whose sides cross.
     pub crossed: u64,
+    /// Elements that enclose the axis of the frame.
+    pub enclosing_axis: u64,
 }
 
 /// How many, and the number of the first.
@@ -85,6 +87,7 @@ impl ShapeStatistics {
         self.ordered += other.ordered;
         self.concave += other.concave;
         self.crossed += other.crossed;
+        self.enclosing_axis += other.enclosing_axis;
     }
 }
 
@@ -168,6 +171,8 @@ impl ShapeBins {
 
 /// Room for one block of elements, reused.
 pub(super) struct Workspace {
+    /// What measures look at, where it is not what the file has.
+    frame: Option<Frame>,
     corners: [Corner; Shape::MAX_CORNERS],
     geometry: Geometry,
     scores: [Lanes; MOST_MEASURES],
@@ -175,8 +180,9 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    pub(super) fn new() -> Box<Self> {
+    pub(super) fn new(frame: Frame) -> Box<Self> {
         Box::new(Self {
+            frame: (frame != Frame::OWN).then_some(frame),
             corners: [[[0.0; LANES]; 3]; Shape::MAX_CORNERS],
             geometry: Geometry::default(),
             scores: [[0.0; LANES]; MOST_MEASURES],
@@ -206,6 +212,9 @@ pub(super) fn measure(
         gather(rows, nodes.rows(), shape.corners(), &mut work.corners);
         let first = position + (number * LANES) as u64;
         measure_elements(shape, labels, signed, first, work, bins, &mut found);
+        if let Some(frame) = &work.frame {
+            found.enclosing_axis += frame.apply(&mut work.corners[..shape.corners()], labels.len());
+        }
         for subject in 0..measures::subjects(shape).len() {
             measure_subject(shape, subject, labels.len(), first, work, bins, &mut found);
         }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::input::Limits;
+use crate::mesh::Frame;
 use crate::summary::Judgement;
 
 /// What a caller may ask of a run.
@@ -22,6 +23,8 @@ pub struct Options {
     pub format: Option<String>,
     /// Codes of the measures that the summary shall hold; empty for all.
     pub measures: Vec<String>,
+    /// The coordinates that measures look at.
+    pub frame: Frame,
     /// Count elements that name missing nodes instead of refusing the file.
     pub allow_missing_nodes: bool,
     /// Limits that guard the machine.
@@ -43,6 +46,7 @@ impl Default for Options {
             scratch_bytes: 4 << 40,
             format: None,
             measures: Vec::new(),
+            frame: Frame::OWN,
             allow_missing_nodes: false,
             limits: Limits::default(),
             judgement: Judgement::default(),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::numbers::{bytes, count, counted, percent, significant};
 use super::reasons;
 use super::safe::escaped;
-use crate::summary::{Checks, Expected, Run, Sizes, Summary};
+use crate::summary::{Checks, Expected, Frame, Run, Sizes, Summary};
 
 /// Significant digits of areas and volumes, and of lengths.
 const DIGITS: (usize, usize) = (6, 4);
@@ -16,6 +16,7 @@ pub fn lines(summary: &Summary) -> Vec<(&'static str, String)> {
     if !summary.elements.not_measured.is_empty() {
         lines.push(("not measured", by_name(&summary.elements.not_measured)));
     }
+    lines.extend(summary.frame.as_ref().map(|frame| ("frame", in_frame(frame))));
     lines.extend(totals(summary));
     lines.extend(sizes(&summary.sizes));
     let checks = findings(&summary.checks);
@@ -49,6 +50,20 @@ fn elements(summary: &Summary) -> String {
         text += "; none that a measure is defined for";
     } else if summary.shapes.values().any(|measured| measured.order.keys().any(|order| order != "1")) {
         text += "; those of higher order are measured by their corners";
+    }
+    text
+}
+
+/// The coordinates that the measures are of.
+fn in_frame(frame: &Frame) -> String {
+    let mut text = format!("measures in {}", frame.system);
+    if frame.stretch != [1.0; 3] {
+        let factors = frame.stretch.map(|factor| factor.to_string()).join(", ");
+        text = format!("{text}, stretched by {factors}");
+    }
+    if frame.enclosing_axis > 0 {
+        let (one, many) = ("element that encloses the axis", "elements that enclose the axis");
+        text = format!("{text}; {}", counted(frame.enclosing_axis, one, many));
     }
     text
 }

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mesh::Shape;
+use crate::mesh::{Shape, System};
 
 pub use checks::Checks;
 pub use rule::{GOOD, INVESTIGATE, PRESETS, Preset, Rule, STATISTICS, Statistic, Subject, preset};
@@ -34,6 +34,9 @@ pub struct Summary {
     pub nodes: Nodes,
     /// Its elements, measured or not.
     pub elements: Elements,
+    /// The coordinates that measures looked at, where they are not the file's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Frame>,
     /// What was measured, by shape; a shape that the mesh lacks has no key.
     pub shapes: BTreeMap<Shape, ShapeSummary>,
     /// Sums over the elements of the mesh's own dimension.
@@ -86,6 +89,17 @@ pub struct Bounds {
     pub min: [f64; 3],
     /// Largest x, y, z.
     pub max: [f64; 3],
+}
+
+/// The coordinates that measures looked at. All but measures and flaws of faces is in the file's own.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// The system: `cartesian`, `cylindrical:z`, `cylindrical:x@0,10,0`.
+    pub system: System,
+    /// What each of its coordinates is multiplied by.
+    pub stretch: [f64; 3],
+    /// Number of elements that enclose the axis, which have no image in cylindrical coordinates.
+    pub enclosing_axis: u64,
 }
 
 /// Elements of the mesh.

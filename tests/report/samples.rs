@@ -56,6 +56,7 @@ pub fn mesh(name: &str, shapes: BTreeMap<Shape, ShapeSummary>) -> Summary {
             by_type: named([("C3D4", count), ("B31", 12)]),
             not_measured: named([("line", 12)]),
         },
+        frame: None,
         shapes,
         totals: Totals { area: None, volume: Some(816.029_7) },
         sizes: Sizes {

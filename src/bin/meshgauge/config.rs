@@ -8,6 +8,7 @@ use std::time::Duration;
 use anyhow::Context;
 use meshgauge::Options;
 use meshgauge::compare::{Tolerance, Tolerances};
+use meshgauge::mesh::{Frame, System};
 use meshgauge::summary::{Judgement, PRESETS, Rule};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,8 @@ pub struct Score {
     pub scratch: PathBuf,
     pub scratch_limit: Size,
     pub measures: String,
+    pub frame: System,
+    pub stretch: [f64; 3],
     pub allow_missing_nodes: bool,
     pub run_info: bool,
 }
@@ -174,6 +177,8 @@ impl Default for Score {
             scratch: PathBuf::new(),
             scratch_limit: Size(4 << 40),
             measures: "all".into(),
+            frame: Frame::OWN.system,
+            stretch: Frame::OWN.stretch,
             allow_missing_nodes: false,
             run_info: true,
         }
@@ -299,8 +304,10 @@ impl Config {
         self.verdict.judgement()?;
         self.telemetry.address()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
+        let stretches = self.score.stretch.iter().all(|factor| factor.is_finite() && *factor > 0.0);
         let wrong = [
             (!self.compare.is_sound(), "compare: tolerances are numbers from 0 up".to_owned()),
+            (!stretches, "score.stretch must be three numbers over 0".to_owned()),
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
             (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),
             (self.watch.depth == 0, "watch.depth must be at least 1".to_owned()),
@@ -347,6 +354,7 @@ impl Config {
             scratch_bytes: score.scratch_limit.0,
             format: None,
             measures: selection::measures(&score.measures)?,
+            frame: Frame { system: score.frame, stretch: score.stretch },
             allow_missing_nodes: score.allow_missing_nodes,
             limits: meshgauge::input::Limits {
                 file_bytes: limits.file_bytes.0,

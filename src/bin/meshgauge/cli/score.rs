@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use meshgauge::error::Kind;
+use meshgauge::mesh::{System, three};
 use meshgauge::summary::Expectation;
 use meshgauge::{Error, Options, Progress, Summary};
 
@@ -66,6 +67,17 @@ pub struct Args {
     #[arg(long, value_name = "npl|all|LIST")]
     measures: Option<String>,
 
+    /// The coordinates that measures look at: cartesian, or cylindrical[:AXIS[@X,Y,Z]] (r, angle in radians, height).
+    ///
+    /// AXIS is x, y or z, and X,Y,Z a point on it. A mesh for a solver in cylindrical coordinates is judged by its
+    /// elements there; volume, sizes and checks of whole elements stay those of the file's coordinates.
+    #[arg(long, value_name = "SYSTEM")]
+    frame: Option<System>,
+
+    /// What each coordinate is multiplied by before shapes are measured, for an anisotropic problem.
+    #[arg(long, value_name = "X,Y,Z", value_parser = stretch)]
+    stretch: Option<Stretch>,
+
     /// The true volume of the domain; the mesh fails if its own is off by more than the tolerance.
     #[arg(long, value_name = "V", conflicts_with = "expect_area", value_parser = positive)]
     expect_volume: Option<f64>,
@@ -114,6 +126,15 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number over 0".into())
 }
 
+/// Factors of the coordinates.
+#[derive(Debug, Clone, Copy)]
+struct Stretch([f64; 3]);
+
+fn stretch(text: &str) -> Result<Stretch, String> {
+    let factors = three(text).filter(|factors| factors.iter().all(|factor| *factor > 0.0));
+    factors.map(Stretch).ok_or_else(|| "expected three numbers over 0, as in 1,1,4".into())
+}
+
 /// `MEASURE=VALUE`.
 fn limit(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected MEASURE=VALUE, as in M31=0.05")?;
@@ -131,6 +152,8 @@ impl Args {
         score.memory = self.memory.unwrap_or(score.memory);
         score.scratch = self.scratch.clone().unwrap_or_else(|| score.scratch.clone());
         score.measures = self.measures.clone().unwrap_or_else(|| score.measures.clone());
+        score.frame = self.frame.unwrap_or(score.frame);
+        score.stretch = self.stretch.map_or(score.stretch, |stretch| stretch.0);
         score.allow_missing_nodes |= self.allow_missing_nodes;
         score.run_info &= !self.no_run_info;
         config.verdict.fail_under.extend(self.fail_under.iter().cloned());
