@@ -46,7 +46,7 @@ With several meshes the others are still scored, and the highest status is retur
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Score(score::Args),
+    Score(Box<score::Args>),
     Watch(watch::Args),
     Status(status::Args),
     Compare(compare::Args),
