@@ -21,8 +21,13 @@ pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// The scalar product.
+pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// The vector at length 1; `None` where it has no length.
 pub(super) fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
-    let length = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
+    let length = dot(a, a).sqrt();
     (length > 0.0 && length.is_finite()).then(|| a.map(|v| v / length))
 }

@@ -2,11 +2,13 @@
 //! them, moved, under a number of its own. A deck without any instance was written by a mesher: its parts stand as
 //! they are.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::elements::ElementLines;
+use super::make::{MadeElements, MadeNodes, Maker};
 use super::nodes::NodeLines;
 use super::placement::{Affine, Placement};
 use super::types::Kind;
@@ -43,10 +45,24 @@ pub(super) struct Block<T> {
 /// What a part, an instance or the assembly itself holds.
 #[derive(Default)]
 pub(super) struct Blocks {
-    pub(super) nodes: Vec<Block<Placement>>,
-    pub(super) elements: Vec<Block<Kind>>,
-    /// A keyword that makes nodes or elements and is not expanded: an error once the blocks are used.
-    pub(super) unexpanded: Option<(String, Place)>,
+    pub(super) nodes: Vec<NodeBlock>,
+    pub(super) elements: Vec<ElementBlock>,
+    /// What keywords that make others draw on.
+    pub(super) maker: Maker,
+    /// Why a keyword that makes others could not: an error once the blocks are used.
+    pub(super) fault: Cell<Option<Error>>,
+}
+
+/// Nodes, as they stand in the deck or were made.
+pub(super) enum NodeBlock {
+    Lines(Arc<Block<Placement>>),
+    Made(MadeNodes),
+}
+
+/// Elements, as they stand in the deck or were made.
+pub(super) enum ElementBlock {
+    Lines(Arc<Block<Kind>>),
+    Made(MadeElements),
 }
 
 /// A `*PART`.
@@ -72,10 +88,17 @@ impl Blocks {
         motion: Affine,
         instances: Option<&Arc<HashMap<Vec<u8>, u64>>>,
     ) -> Result<()> {
-        if let Some((keyword, place)) = &self.unexpanded {
-            return Err(place.of(Error::unsupported(format!("the keyword *{keyword} is not expanded"))));
+        if let Some(error) = self.fault.take() {
+            return Err(error);
         }
         for block in &self.nodes {
+            let block = match block {
+                NodeBlock::Lines(block) => block,
+                NodeBlock::Made(made) => {
+                    made.yield_to(out, scope, motion)?;
+                    continue;
+                }
+            };
             let placement = Placement { motion, ..block.what };
             let layout: Arc<dyn NodeLayout> =
                 Arc::new(NodeLines { source: Arc::clone(&block.source), placement, scope });
@@ -84,6 +107,13 @@ impl Blocks {
             }
         }
         for block in &self.elements {
+            let block = match block {
+                ElementBlock::Lines(block) => block,
+                ElementBlock::Made(made) => {
+                    made.yield_to(out, scope)?;
+                    continue;
+                }
+            };
             let layout: Arc<dyn ElementLayout> = Arc::new(ElementLines {
                 source: Arc::clone(&block.source),
                 kind: block.what.clone(),

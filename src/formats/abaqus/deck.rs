@@ -4,10 +4,11 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::assembly::{Block, Blocks, Instance, MOST_INSTANCES, Part, Place, scope};
+use super::assembly::{Block, Blocks, ElementBlock, Instance, MOST_INSTANCES, NodeBlock, Part, Place, scope};
 use super::elements::{MOST_NODES, cut_at_records};
 use super::fields::Fields;
 use super::keywords::{Keyword, plain};
+use super::make::{Command, Noted, SetHead};
 use super::placement::{Affine, Placement, System};
 use super::points::{Row, frame, motion, points};
 use super::types::{self, Kind};
@@ -15,9 +16,8 @@ use crate::error::{Error, Result, excerpt};
 use crate::formats::{Outline, text};
 use crate::input::{Input, Source, Spot};
 
-/// Keywords that make nodes or elements out of others, or fetch them from elsewhere.
-const UNEXPANDED: [&str; 8] =
-    ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SYMMETRICMODELGENERATION"];
+/// Keywords that move nodes, or fetch a mesh from elsewhere.
+const UNEXPANDED: [&str; 3] = ["NMAP", "IMPORT", "SYMMETRICMODELGENERATION"];
 /// Keywords that the mesh hangs on: their abbreviations are refused rather than skipped.
 const SPELLED_OUT: [&str; 6] = ["NODE", "ELEMENT", "INCLUDE", "INSTANCE", "PART", "SYSTEM"];
 
@@ -82,8 +82,12 @@ enum Open {
     Nothing,
     /// Data that is no mesh.
     Other,
-    Nodes(System),
-    Elements(Kind),
+    Nodes(System, Option<Vec<u8>>),
+    Elements(Kind, Option<Vec<u8>>),
+    /// Members of a set.
+    Set(SetHead),
+    /// What a keyword makes others from.
+    Make(Command, Vec<Row>),
     /// Points of a `*SYSTEM`.
     Frame(Vec<Row>),
     /// Shift and turn of an `*INSTANCE`.
@@ -121,8 +125,26 @@ impl<'a> Deck<'a> {
     fn enter(&mut self, keyword: &Keyword, place: &Place) -> Result<()> {
         self.open = Open::Other;
         match keyword.name.as_str() {
-            "NODE" => self.open = Open::Nodes(system(keyword)?),
-            "ELEMENT" => self.open = Open::Elements(self.kind(&keyword.required("TYPE")?)?),
+            "NODE" => self.open = Open::Nodes(system(keyword)?, keyword.label("NSET").ok().flatten()),
+            "ELEMENT" => {
+                let set = keyword.label("ELSET").ok().flatten();
+                self.open = Open::Elements(self.kind(&keyword.required("TYPE")?)?, set);
+            }
+            "NSET" | "ELSET" => {
+                if let Some(head) = SetHead::of(keyword) {
+                    if head.is_unknown() {
+                        let nothing = Noted::Set(head.clone(), Arc::clone(&place.source), place.at..place.at);
+                        self.blocks().maker.note(nothing);
+                    }
+                    self.open = Open::Set(head);
+                }
+            }
+            "NGEN" | "NFILL" | "NCOPY" | "ELGEN" | "ELCOPY" => {
+                match Command::of(keyword, self.frame != Affine::IDENTITY) {
+                    Ok(command) => self.open = Open::Make(command, Vec::new()),
+                    Err(error) => self.fail(place.of(error))?,
+                }
+            }
             "USERELEMENT" => self.user_element(keyword)?,
             "SYSTEM" => self.open = Open::Frame(Vec::new()),
             "PART" => self.part(keyword, place)?,
@@ -135,9 +157,8 @@ impl<'a> Deck<'a> {
             "INSTANCE" => self.instance(keyword, place)?,
             "ENDINSTANCE" => self.leave(Level::Instance, "*INSTANCE before *END INSTANCE")?,
             name if UNEXPANDED.contains(&name) => {
-                let first = (name.to_owned(), place.clone());
-                self.blocks().unexpanded.get_or_insert(first);
-                self.flush()?;
+                let error = Error::unsupported(format!("the keyword *{name} is not expanded"));
+                self.fail(place.of(error))?;
             }
             name if name.len() >= 3
                 && SPELLED_OUT.iter().any(|k| k.len() > name.len() && k.starts_with(name)) =>
@@ -161,30 +182,49 @@ impl<'a> Deck<'a> {
         if !found.map_err(|_| source.malformed_text(first, "a data line"))? {
             return Ok(());
         }
-        if range.end == source.len() && matches!(self.open, Open::Nodes(_) | Open::Elements(_)) {
+        if range.end == source.len()
+            && matches!(self.open, Open::Nodes(..) | Open::Elements(..) | Open::Make(..))
+        {
             ends_with_its_line(source, range.start, bytes)?;
         }
         // Pieces begin with a line, not with its first field.
         let line =
             memchr::memrchr(b'\n', &bytes[..fields.at]).map_or(range.start, |k| range.start + k as u64 + 1);
+        if matches!(self.open, Open::Make(..))
+            && let Open::Make(command, rows) = std::mem::replace(&mut self.open, Open::Other)
+        {
+            return self.make_from(source, line..range.end, command, rows);
+        }
         match &mut self.open {
-            Open::Other => Ok(()),
+            Open::Other | Open::Make(..) => Ok(()),
+            Open::Set(head) => {
+                let noted = Noted::Set(head.clone(), Arc::clone(source), line..range.end);
+                self.blocks().maker.note(noted);
+                Ok(())
+            }
             Open::Nothing => Err(source.malformed_text(first, "a keyword line, as *HEADING or *NODE")),
             Open::Frame(rows) | Open::Motion(rows) => points(source, line..range.end, rows),
-            Open::Nodes(system) => {
+            Open::Nodes(system, set) => {
                 let what = Placement { system: *system, frame: self.frame, motion: Affine::IDENTITY };
+                let set = set.clone();
                 let mut spans = Vec::new();
                 text::cut_at_lines(self.input, source, line..range.end, |span| {
                     spans.push(span);
                     Ok(())
                 })?;
-                self.blocks().nodes.push(Block { source: Arc::clone(source), spans, what });
+                let block = Arc::new(Block { source: Arc::clone(source), spans, what });
+                let blocks = self.blocks();
+                blocks.maker.note(Noted::Nodes(Arc::clone(&block), set));
+                blocks.nodes.push(NodeBlock::Lines(block));
                 self.flush()
             }
-            Open::Elements(kind) => {
-                let what = kind.clone();
+            Open::Elements(kind, set) => {
+                let (what, set) = (kind.clone(), set.clone());
                 let spans = cut_at_records(self.input, source, &what, line..range.end)?;
-                self.blocks().elements.push(Block { source: Arc::clone(source), spans, what });
+                let block = Arc::new(Block { source: Arc::clone(source), spans, what });
+                let blocks = self.blocks();
+                blocks.maker.note(Noted::Elements(Arc::clone(&block), set));
+                blocks.elements.push(ElementBlock::Lines(block));
                 self.flush()
             }
         }
@@ -200,19 +240,65 @@ impl<'a> Deck<'a> {
         .unwrap_or(&mut self.outside)
     }
 
-    /// Yields what need not wait.
+    /// Yields what need not wait; what later keywords may draw on stays.
     fn flush(&mut self) -> Result<()> {
         if self.parts.is_empty() {
             self.seen.note(&self.outside);
-            std::mem::take(&mut self.outside).yield_to(self.out, 0, Affine::IDENTITY, None)?;
+            self.outside.yield_to(self.out, 0, Affine::IDENTITY, None)?;
+            self.outside.nodes.clear();
+            self.outside.elements.clear();
         }
         Ok(())
+    }
+
+    /// Takes in data lines of a keyword that makes others: each line makes some, or all are needed first.
+    fn make_from(
+        &mut self,
+        source: &Arc<Source>,
+        range: Range<u64>,
+        command: Command,
+        mut rows: Vec<Row>,
+    ) -> Result<()> {
+        if command.is_by_line() {
+            self.make(&command, (source, range), &[])?;
+        } else {
+            points(source, range, &mut rows)?;
+        }
+        self.open = Open::Make(command, rows);
+        Ok(())
+    }
+
+    /// Makes nodes or elements. A fault counts only where they are used.
+    fn make(&mut self, command: &Command, data: (&Arc<Source>, Range<u64>), rows: &[Row]) -> Result<()> {
+        let input = self.input;
+        let blocks = self.blocks();
+        match blocks.maker.run(command, input, data, rows) {
+            Ok(made) => {
+                blocks.nodes.extend(made.nodes.map(NodeBlock::Made));
+                blocks.elements.extend(made.elements.into_iter().map(ElementBlock::Made));
+                self.flush()
+            }
+            Err(error) => self.fail(error),
+        }
+    }
+
+    /// Keeps the first fault of a part, which may have no instance.
+    fn fail(&mut self, error: Error) -> Result<()> {
+        let fault = self.blocks().fault.get_mut();
+        fault.get_or_insert(error);
+        self.flush()
     }
 
     /// Ends the data of the last keyword.
     fn close(&mut self) -> Result<()> {
         let done = match std::mem::replace(&mut self.open, Open::Other) {
             Open::Frame(rows) => frame(&rows).map(|frame| self.frame = frame),
+            Open::Make(command, rows) if !command.is_by_line() => {
+                if let Some(Place { source, at }) = self.place.clone() {
+                    self.make(&command, (&source, at..at), &rows)?;
+                }
+                Some(())
+            }
             Open::Motion(rows) => motion(&rows).map(|motion| {
                 if let Some(instance) = self.instances.last_mut() {
                     instance.motion = motion;

@@ -46,6 +46,32 @@ impl ElementLayout for ElementLines {
 }
 
 impl ElementLines {
+    /// Shows the number and the nodes of each record of `span`.
+    pub(super) fn each(
+        &self,
+        span: Range<u64>,
+        mut see: impl FnMut(u64, &[u64]) -> Result<()>,
+    ) -> Result<()> {
+        let window = self.source.window(span.clone());
+        let (mut fields, mut ids) = (Fields::new(&window), Vec::new());
+        let mut next = || -> Result<bool> {
+            if !fields.next_line()? {
+                return Ok(false);
+            }
+            let start = fields.at;
+            let element = fields.number("an element number")?;
+            self.nodes(element, &mut fields, &mut ids, start)?;
+            see(element, &ids).map(|()| true)
+        };
+        let done = loop {
+            match next() {
+                Ok(true) => {}
+                done => break done,
+            }
+        };
+        done.map(|_| ()).map_err(|e| self.source.place(e, Spot::Text(span.start + fields.at as u64)))
+    }
+
     /// An error leaves `fields` on the line that it is about.
     fn records(&self, fields: &mut Fields<'_>, base: u64, out: &mut ElementSink<'_>) -> Result<()> {
         let mut ids = Vec::with_capacity(self.kind.of.nodes.min(MOST_NODES));
@@ -133,7 +159,7 @@ fn labelled(fields: &mut Fields<'_>, instances: &HashMap<Vec<u8>, u64>) -> Resul
 }
 
 /// Takes the instance out of the node's number that an error names.
-fn plain_number(error: Error) -> Error {
+pub(super) fn plain_number(error: Error) -> Error {
     match error.kind() {
         Fault::MissingNode { element, node } => {
             Error::new(Fault::MissingNode { element: *element, node: node & LARGEST_NUMBER })

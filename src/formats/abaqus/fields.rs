@@ -157,6 +157,39 @@ impl<'t> Fields<'t> {
         }
     }
 
+    /// Whole numbers up to the end of the line, each with what it is where nothing stands there.
+    pub(super) fn integers<const N: usize>(&mut self, absent: [Option<u64>; N]) -> Result<[u64; N]> {
+        let (mut values, mut more) = ([0; N], true);
+        for (value, absent) in values.iter_mut().zip(absent) {
+            more = more && !self.ends_line();
+            let given = more && !self.is_blank();
+            *value = match absent {
+                Some(absent) if !given => absent,
+                _ => self.integer("a number")?,
+            };
+            more = more && self.comma()?;
+        }
+        if more && !self.ends_line() {
+            return Err(self.malformed(format!("at most {N} numbers")));
+        }
+        Ok(values)
+    }
+
+    /// Up to ten numbers to the end of the line, and how many they are; what is not given is 0.
+    pub(super) fn reals(&mut self) -> Result<([f64; 10], usize)> {
+        let (mut values, mut count) = ([0.0; 10], 0);
+        let mut more = true;
+        while more && !self.ends_line() {
+            let Some(value) = values.get_mut(count) else {
+                return Err(self.malformed("at most ten numbers"));
+            };
+            *value = self.real()?;
+            count += 1;
+            more = self.comma()?;
+        }
+        Ok((values, count))
+    }
+
     /// The field's bytes without the blanks round them, quoted ones whole.
     pub(super) fn token(&mut self) -> &'t [u8] {
         self.skip_blanks();

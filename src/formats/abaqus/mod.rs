@@ -2,8 +2,9 @@
 //!
 //! A flat deck yields its pieces as they are found. Parts wait for their instances: numbers begin anew in every part,
 //! so that a node is known by its instance (bits 40 and up) and its own number. What is read: `*NODE` with its systems,
-//! `*SYSTEM`, `*ELEMENT`, `*USER ELEMENT`, `*PART`, `*ASSEMBLY`, `*INSTANCE`, `*INCLUDE` and `INPUT=`. What would make
-//! nodes or elements out of others is refused by name; every other keyword is no mesh and is skipped with its data.
+//! `*SYSTEM`, `*ELEMENT`, `*USER ELEMENT`, `*PART`, `*ASSEMBLY`, `*INSTANCE`, `*INCLUDE` and `INPUT=`. Keywords that make
+//! nodes or elements out of others are expanded (`make`) or refused by name; every other keyword is no mesh and is skipped
+//! with its data.
 
 mod assembly;
 mod deck;
@@ -11,6 +12,7 @@ mod detect;
 mod elements;
 mod fields;
 mod keywords;
+mod make;
 mod nodes;
 mod placement;
 mod points;

@@ -91,7 +91,7 @@ impl Affine {
         Some(Affine { rows: Some(rows), shift: arm })
     }
 
-    fn apply(&self, p: [f64; 3]) -> [f64; 3] {
+    pub(super) fn apply(&self, p: [f64; 3]) -> [f64; 3] {
         let t = self.shift;
         match &self.rows {
             None => [p[0] + t[0], p[1] + t[1], p[2] + t[2]],

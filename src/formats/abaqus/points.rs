@@ -16,8 +16,13 @@ pub(super) struct Row {
 
 impl Row {
     /// Three numbers from `first` on, if that many were read.
-    fn point(&self, first: usize) -> Option<[f64; 3]> {
+    pub(super) fn point(&self, first: usize) -> Option<[f64; 3]> {
         (self.read > first).then(|| [0, 1, 2].map(|k| self.values[first + k]))
+    }
+
+    /// The seventh number: an angle.
+    pub(super) fn angle(&self) -> f64 {
+        self.values[6]
     }
 }
 

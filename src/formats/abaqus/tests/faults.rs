@@ -73,7 +73,7 @@ fn errors_name_the_line_and_what_stands_there() {
             "line 8: element 2 names node 5, which the file does not define",
         ),
         (four("*ELEMENT,ELSET=E\n"), "line 6: expected the parameter TYPE=, found *ELEMENT without it"),
-        (four("*NGEN\n1,4\n"), "line 6: the keyword *NGEN is not expanded"),
+        (four("*NMAP\n1,4\n"), "line 6: the keyword *NMAP is not expanded"),
         (four("*ELEM,TYPE=S4\n1,1,2,3,4\n"), "line 6: the abbreviated keyword *ELEM is not read"),
         (
             four("*USER ELEMENT,TYPE=U1,NODES=9999999\n"),

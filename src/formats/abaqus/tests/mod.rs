@@ -2,6 +2,7 @@
 
 mod corpus;
 mod faults;
+mod made;
 mod quirks;
 
 use std::path::Path;
