@@ -17,6 +17,7 @@ mod comsol;
 pub mod degenerate;
 mod exodus;
 mod femgv;
+mod foreign;
 mod gmsh;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -56,6 +57,7 @@ use crate::input::{Input, Limits, Scratch, Source};
 use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
+pub use foreign::foreign;
 pub use plan::Plan;
 pub use sink::{BLOCK, Chunks, ElementSink, Ledger, TypeCount};
 

@@ -90,7 +90,7 @@ fn choose(input: &Input, name: Option<&str>) -> Result<&'static dyn Format> {
     }
     let head = input.source.peek(0..HEAD_BYTES as u64);
     FORMATS.iter().copied().find(|format| format.knows(input)).ok_or_else(|| {
-        let mut text = match looks_like(head) {
+        let mut text = match looks_like(head).or_else(|| formats::foreign(head)) {
             Some(what) => format!("expected a mesh, found {what}; looked for:"),
             None => "expected a mesh of a known format; looked for:".to_owned(),
         };

@@ -46,6 +46,10 @@ pub(super) fn is_utf16(head: &[u8]) -> bool {
         || matches!(head, [0, b, ..] | [b, 0, ..] if *b != 0)
 }
 
+fn is_number(line: &[u8]) -> bool {
+    line.iter().all(u8::is_ascii_digit)
+}
+
 fn looks_like_deck(head: &[u8]) -> bool {
     let mut lines = head.split(|b| *b == b'\n').map(<[u8]>::trim_ascii);
     let mut lines = lines.by_ref().filter(|line| !line.is_empty() && !line.starts_with(b"**")).peekable();
@@ -71,7 +75,10 @@ fn looks_like_deck(head: &[u8]) -> bool {
         let next = lines.peek().copied().unwrap_or(b"*");
         known |= KNOWN.contains(&name.as_str())
             && match name.as_str() {
-                "NODE" if !(next.starts_with(b"*") || next.contains(&b',')) => return false,
+                // A node at the origin may be a number alone; in LS-DYNA coordinates stand beside it.
+                "NODE" if !(next.starts_with(b"*") || next.contains(&b',') || is_number(next)) => {
+                    return false;
+                }
                 "PART" | "ASSEMBLY" => has_parameter("NAME="),
                 "INCLUDE" => has_parameter("INPUT="),
                 "ELEMENT" => has_parameter("TYPE=") || line.ends_with(b","),
@@ -94,6 +101,7 @@ mod tests {
             (b"*NODE, INPUT=nodes.inp\n*ELEMENT, TYPE=S4, INPUT=e.inp", true),
             (b"*INCLUDE, INPUT=mesh.inp\n", true),
             (b"*Part, name=P\n*End Part", true),
+            (b"*NODE\n1\n2, 10.\n", true),
             (b"*NODE\n       1 0.0 0.0 0.0\n", false),
             (b"*NODE\n$ comment\n1, 0., 0.\n", false),
             (b"$# LS-DYNA\n*KEYWORD\n*NODE\n1, 0, 0, 0\n", false),

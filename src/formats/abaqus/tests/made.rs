@@ -141,7 +141,7 @@ fn what_is_in_doubt_is_refused_by_name() {
             "line 7: expected two end nodes whose numbers lie a multiple of the increment apart, found 1, 4, 2",
         ),
         ("*NGEN,LINE=P\n1,4,1,,2,2,2\n", "line 6: *NGEN with LINE=P is not expanded"),
-        ("*NGEN,LINE=C\n1,4,1,,5,5,1\n", "line 7: expected a centre that is as far"),
+        ("*NGEN,LINE=C\n1,4,1,,5,4,1\n", "line 7: expected a centre that is as far"),
         ("*NGEN,LINE=C,SYSTEM=C\n1,4,1,,5,5,1\n", "line 6: *NGEN with SYSTEM is not expanded"),
         ("*NFILL,BIAS=0.5\nA,A,3\n", "line 6: *NFILL with BIAS is not expanded"),
         ("*NFILL\nA,B,3\n", "line 7: expected a set that is defined before, found B"),
