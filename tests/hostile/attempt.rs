@@ -7,7 +7,7 @@ use std::time::Duration;
 use meshgauge::error::{At, Kind};
 use meshgauge::{Error, Options, Result, Summary, score};
 
-use crate::heap;
+use crate::{COMPANIONS, heap};
 
 /// Longer takes no attempt, even on a machine that is busy with other things.
 const DEADLINE: Duration = Duration::from_secs(60);
@@ -47,15 +47,17 @@ pub fn attempt_bytes(name: &str, bytes: &[u8], what: &str) -> Result<Summary> {
     attempt(&path, what)
 }
 
-/// Has a go at the bytes in place of those of a mesh: under its name, and with the file of its nodes beside it.
+/// Has a go at the bytes in place of those of a mesh: under its name, and with what stands beside it.
 #[track_caller]
 pub fn attempt_in_place(mesh: &Path, bytes: &[u8], what: &str) -> Result<Summary> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join(mesh.file_name().expect("a name"));
     std::fs::write(&path, bytes).expect("written");
-    let nodes = mesh.with_extension("node");
-    if nodes.exists() {
-        std::fs::copy(&nodes, path.with_extension("node")).expect("copied");
+    for extension in COMPANIONS {
+        let companion = mesh.with_extension(extension);
+        if companion.exists() {
+            std::fs::copy(&companion, path.with_extension(extension)).expect("copied");
+        }
     }
     attempt(&path, what)
 }

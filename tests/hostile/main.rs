@@ -22,6 +22,9 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
+/// Extensions of what stands beside a mesh under its name: nodes, numbers.
+const COMPANIONS: [&str; 2] = ["node", "h5"];
+
 /// Every mesh of `tests/meshes`, with its format's name.
 fn own_meshes() -> Vec<(&'static str, PathBuf)> {
     let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes");
@@ -30,7 +33,9 @@ fn own_meshes() -> Vec<(&'static str, PathBuf)> {
         let folder = meshes.join(format.name());
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
         let paths = entries.map(|entry| entry.expect("an entry").path());
-        let is_mesh = |path: &PathBuf| path.extension().is_some_and(|e| e != "jsonl" && e != "node");
+        let is_mesh = |path: &PathBuf| {
+            path.extension().is_some_and(|e| e != "jsonl" && !COMPANIONS.iter().any(|c| e == *c))
+        };
         found.extend(paths.filter(is_mesh).map(|p| (format.name(), p)));
     }
     found.sort();

@@ -24,7 +24,7 @@ use old_layout::OldLayout;
 /// What an HDF5 file starts with, perhaps behind a block of the user's own.
 const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Largest chunk, unpacked.
-const LARGEST_CHUNK: usize = 256 << 20;
+const LARGEST_CHUNK: usize = 128 << 20;
 /// Most that is read of the file at once: a chunk as it stands there, at worst packed into more bytes than it has.
 const LARGEST_READ: usize = LARGEST_CHUNK + (LARGEST_CHUNK >> 3);
 /// Most bytes of an object's header.

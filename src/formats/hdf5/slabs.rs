@@ -11,7 +11,7 @@ use crate::formats::array::Number;
 /// Bytes that a slab aims at.
 const SLAB: u64 = 8 << 20;
 /// Most bytes of a slab that is as high as the chunks.
-const HIGHEST_SLAB: u64 = 64 << 20;
+const HIGHEST_SLAB: u64 = 32 << 20;
 
 /// Where `count` numbers start, if the layout is one plain run of them that was written.
 pub(super) fn plain_run(layout: &DataLayout, count: u64) -> Option<u64> {

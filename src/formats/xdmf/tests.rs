@@ -1,7 +1,5 @@
 //! XDMF files of several writers.
 
-use std::fs;
-
 use super::Xdmf;
 use crate::formats::testing::{self, Row, check, corpus, detected, message, own, read_bytes, read_file};
 use crate::mesh::Shape::{self, *};
@@ -121,7 +119,7 @@ fn what_is_wrong_or_not_read_is_named() {
 fn heavy_data_of_another_length_or_of_no_file_are_errors() {
     let [text, data] = ["meshio_mixed_hdf.xdmf", "meshio_mixed_hdf.h5"].map(|name| own("xdmf").join(name));
     #[expect(clippy::disallowed_methods, reason = "a small file of known size")]
-    let [text, data] = [text, data].map(|path| fs::read(path).expect("readable"));
+    let [text, data] = [text, data].map(|path| std::fs::read(path).expect("readable"));
     let text = String::from_utf8(text).expect("text");
     for (from, to, expected) in [
         ("54 3", "53 3", "expected 159 numbers, as the XDMF file says, found 162"),
