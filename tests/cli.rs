@@ -89,7 +89,10 @@ fn exit_status_and_message_of_each_outcome() {
         ("score good.msh --fail-under M31=2", 2, "from 0 to 1"),
         ("score good.msh --measures verdict", 2, "the sets npl, all"),
         ("score good.msh --mesh-format gmesh", 2, "did you mean gmsh?"),
-        ("score good.msh --worst 3", 2, "--worst"),
+        ("score good.msh --worst 3", 0, ""),
+        ("score good.msh --worst 0", 2, "--worst"),
+        ("score good.msh --by part", 2, "region"),
+        ("score good.msh --by region", 0, ""),
         ("score good.msh --memory lots", 2, "expected a size such as 256MiB, found \"lots\""),
         (
             "score good.msh --config wrong.toml",

@@ -92,6 +92,11 @@ pub trait Format: Sync {
     fn files(&self, _path: &Path) -> Option<Result<Vec<PathBuf>>> {
         None
     }
+    /// What the format divides elements into, as its users call it: `physical groups`, `parts`. Its layouts call
+    /// [`ElementSink::region`]. Nothing where the format has no such thing, or it is not read.
+    fn regions(&self) -> Option<&'static str> {
+        None
+    }
     /// Says where the node and element records stand, in file order. Headers are not believed: what is yielded must lie
     /// in the file.
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()>;

@@ -2,11 +2,12 @@
 //! our order, fills chunks and hands on the full ones.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::error::{Error, Kind, Result};
 use crate::input::Spot;
-use crate::mesh::{Chunk, Class, ElementType, IN_ORDER, Nodes, Origin, Shape};
+use crate::mesh::{Chunk, Class, ElementType, IN_ORDER, NO_REGION, Nodes, Origin, Regions, Shape, Tag};
 
 /// The most elements that a decoder hands over at a time.
 pub const BLOCK: usize = 128;
@@ -83,6 +84,18 @@ pub struct ElementSink<'a> {
     current: usize,
     /// Elements of the type at hand that the ledger does not know of yet.
     run: u64,
+    /// What elements are tagged with, where somebody asked for it.
+    tags: Option<Tags<'a>>,
+}
+
+/// The tag of the element that comes next, and the regions of this piece.
+struct Tags<'a> {
+    regions: &'a Regions,
+    next: Tag,
+    /// The layout's own key of the region at hand.
+    key: Option<u64>,
+    /// Numbers of the regions that this piece has met, by key.
+    known: HashMap<u64, u32>,
 }
 
 impl<'a> ElementSink<'a> {
@@ -99,6 +112,38 @@ impl<'a> ElementSink<'a> {
             types: Vec::new(),
             current: 0,
             run: 0,
+            tags: None,
+        }
+    }
+
+    /// Tags the elements with their place in the piece and their region.
+    pub fn tagging(mut self, regions: Option<&'a Regions>) -> Self {
+        let start = |regions| Tags { regions, next: Tag::default(), key: None, known: HashMap::new() };
+        self.tags = regions.map(start);
+        self
+    }
+
+    /// Whether anybody asks for regions: a layout that must work to know them may ask first.
+    #[inline]
+    pub fn wants_regions(&self) -> bool {
+        self.tags.is_some()
+    }
+
+    /// Says which region the elements that follow are in, up to the next call. `key` tells the layout's regions apart;
+    /// `name` is asked for once a key and piece, and regions of one name are one. A piece starts in no region. Where
+    /// nobody asks for regions this costs next to nothing.
+    #[inline]
+    pub fn region(&mut self, key: u64, name: impl FnOnce() -> String) -> Result<()> {
+        match &mut self.tags {
+            Some(tags) if tags.key != Some(key) => {
+                let done = tags.enter(key, name);
+                if done.is_err() {
+                    // Which piece meets one too many depends on the threads.
+                    self.at = Spot::Unknown;
+                }
+                done
+            }
+            _ => Ok(()),
         }
     }
 
@@ -168,6 +213,7 @@ impl<'a> ElementSink<'a> {
             let chunk = self.open(shape)?;
             let step = labels.len().min(chunk.room());
             chunk.extend(&labels[..step], rows[..step].as_flattened());
+            self.tag(shape, step);
             (labels, rows) = (&labels[step..], &rows[step..]);
             self.hand_on_full(shape)?;
         }
@@ -258,7 +304,19 @@ impl<'a> ElementSink<'a> {
     #[inline(always)]
     fn push(&mut self, label: u64, shape: Shape, rows: &[u32]) -> Result<()> {
         self.open(shape)?.push(label, rows);
+        self.tag(shape, 1);
         self.hand_on_full(shape)
+    }
+
+    /// Tags the elements that were added last, where somebody asked for it.
+    #[inline(always)]
+    fn tag(&mut self, shape: Shape, count: usize) {
+        if let (Some(tags), Some(chunk)) = (&mut self.tags, &mut self.open[shape.index()]) {
+            for _ in 0..count {
+                chunk.tag(tags.next);
+                tags.next.ordinal += 1;
+            }
+        }
     }
 
     /// The open chunk of a shape.
@@ -301,6 +359,22 @@ impl<'a> ElementSink<'a> {
             }
         }
         Ok((self.ledger, self.origin.chunk))
+    }
+}
+
+impl Tags<'_> {
+    #[cold]
+    fn enter(&mut self, key: u64, name: impl FnOnce() -> String) -> Result<()> {
+        self.next.region = match self.known.get(&key) {
+            Some(number) => *number,
+            None => {
+                let name = name();
+                let number = if name.is_empty() { NO_REGION } else { self.regions.number(name)? };
+                *self.known.entry(key).or_insert(number)
+            }
+        };
+        self.key = Some(key);
+        Ok(())
     }
 }
 

@@ -15,6 +15,17 @@ pub struct Chunk {
     rows: Vec<u32>,
     /// The element's own number, one an element.
     labels: Vec<u64>,
+    /// One an element, where somebody asked for single elements or regions; else none.
+    tags: Vec<Tag>,
+}
+
+/// What is known of an element besides its number and nodes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tag {
+    /// Its place among the measured elements of its piece, whatever their shape.
+    pub ordinal: u32,
+    /// The number of its region, [`NO_REGION`](super::NO_REGION) where it is in none.
+    pub region: u32,
 }
 
 /// Where a chunk stands in the file: what the merge is ordered by.
@@ -40,6 +51,7 @@ impl Chunk {
             origin: Origin::default(),
             rows: Vec::with_capacity(CHUNK * Shape::MAX_CORNERS),
             labels: Vec::with_capacity(CHUNK),
+            tags: Vec::new(),
         }
     }
 
@@ -49,6 +61,7 @@ impl Chunk {
         self.origin = origin;
         self.rows.clear();
         self.labels.clear();
+        self.tags.clear();
     }
 
     /// Adds an element. `rows` are the shape's corners as rows of the node table.
@@ -69,6 +82,12 @@ impl Chunk {
     /// Number of elements that still fit.
     pub fn room(&self) -> usize {
         CHUNK - self.labels.len()
+    }
+
+    /// Adds what is known of the element that was comes next among those without a tag.
+    pub fn tag(&mut self, tag: Tag) {
+        debug_assert!(self.tags.len() < self.labels.len());
+        self.tags.push(tag);
     }
 
     /// Whether no further element fits.
@@ -105,5 +124,10 @@ impl Chunk {
     /// The corners of all elements as rows of the node table, element by element.
     pub fn rows(&self) -> &[u32] {
         &self.rows
+    }
+
+    /// What is known of the elements besides; empty where nobody asked.
+    pub fn tags(&self) -> &[Tag] {
+        &self.tags
     }
 }

@@ -5,11 +5,15 @@ mod column;
 mod element;
 mod frame;
 mod nodes;
+mod region;
+mod scored;
 mod shape;
 
-pub use chunk::{CHUNK, Chunk, Origin};
+pub use chunk::{CHUNK, Chunk, Origin, Tag};
 pub use column::{Column, ColumnBuilder};
 pub use element::{Class, ElementType, IN_ORDER};
 pub use frame::{Axis, Frame, System, three};
 pub use nodes::{Bounds, Nodes, NodesBuilder};
+pub use region::{NO_REGION, Regions};
+pub use scored::{ElementWriter, ScoredElement};
 pub use shape::{Facts, Shape};

@@ -4,6 +4,7 @@
 //! in a mapped scratch file after. Numbers that follow each other cost nothing; others cost 4 bytes for each number in
 //! their range, or 16 bytes a node where the range is sparse.
 
+use std::collections::{BTreeSet, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::column::{Column, ColumnBuilder};
@@ -323,6 +324,30 @@ impl Nodes {
         }
     }
 
+    /// The numbers of the nodes in some rows, by row. It goes through the index once where that is not sorted by row.
+    pub fn numbers(&self, rows: &BTreeSet<u32>) -> HashMap<u32, u64> {
+        let wanted = |row: u64, id: u64| {
+            let row = u32::try_from(row).ok().filter(|row| rows.contains(row))?;
+            Some((row, id))
+        };
+        match &self.index {
+            Index::Dense { first, .. } => rows.iter().map(|row| (*row, first + u64::from(*row))).collect(),
+            Index::Table { first, rows: table } => {
+                let places = (*first..).zip(table.rows()).filter(|(_, row)| **row > 0);
+                places.filter_map(|(id, row)| wanted(u64::from(*row) - 1, id)).collect()
+            }
+            Index::Pairs(pairs) => pairs.rows().iter().filter_map(|[id, row]| wanted(*row, *id)).collect(),
+            Index::Runs(runs) => {
+                let of_run = |run: &Run| {
+                    let Run { id, row, len } = *run;
+                    let (first, end) = (row as u32, (row + len) as u32);
+                    rows.range(first..end).map(move |row| (*row, id + u64::from(*row - first)))
+                };
+                runs.iter().flat_map(of_run).collect()
+            }
+        }
+    }
+
     /// Notes that an element uses the node in `row`.
     #[inline]
     pub fn mark_used(&self, row: u32) {
@@ -430,8 +455,10 @@ mod tests {
                     last.insert(*id, row as u32);
                 });
                 assert_eq!(nodes.count(), last.len() as u64);
+                let numbers = nodes.numbers(&last.values().copied().collect());
                 for (id, row) in &last {
                     assert_eq!(nodes.row(*id), Some(*row), "node {id}");
+                    assert_eq!(numbers.get(row), Some(id), "row {row}");
                 }
                 assert_eq!(nodes.row(999_999_999_999), None);
                 assert_eq!(nodes.row(0), last.get(&0).copied());

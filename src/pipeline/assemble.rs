@@ -7,11 +7,12 @@ use std::time::{Instant, SystemTime};
 use super::Options;
 use super::measure::{Bins, Hits, ShapeBins, ShapeStatistics};
 use super::merge::{ByShape, Merged};
+use super::regions::{add_worst, by_region};
 use crate::error::Result;
 use crate::formats::{FORMATS, Format, Ledger};
 use crate::input::{Input, mesh_name};
 use crate::measures::{self, Family};
-use crate::mesh::{Class, Frame, Nodes, Shape};
+use crate::mesh::{Class, Frame, Nodes, Regions, Shape};
 use crate::statistics::{Moments, Spread};
 use crate::summary::{
     Bounds, Checks, Elements, Frame as FrameSummary, Judgement, MeasureSummary, MeshFile,
@@ -28,6 +29,7 @@ pub(super) struct Found<'a> {
     pub format: &'static dyn Format,
     pub hash: u64,
     pub nodes: &'a Nodes,
+    pub regions: &'a Regions,
     pub merged: Merged,
     pub bins: Bins,
     pub threads: usize,
@@ -51,7 +53,15 @@ pub(super) fn assemble(found: Found<'_>, options: &Options) -> Result<Summary> {
         expected: None,
         verdict: Verdict { status: Status::Pass, reasons: Vec::new() },
         run: None,
+        regions: None,
     };
+    if options.worst > 0 {
+        add_worst(&mut summary.shapes, &found.bins, found.nodes, found.regions);
+    }
+    if options.by_region {
+        let of = found.format.regions();
+        summary.regions = Some(by_region(&found.merged.shapes, &reversed, found.regions, of));
+    }
     summary.sizes = sizes(&found, summary.dimension());
     options.judgement.judge(&mut summary);
     name_first_elements(&found, &reversed, &mut summary);
@@ -175,6 +185,7 @@ fn measure_summary(
         sd: moments.sd(value),
         quantiles: bins.scores.quantiles(further_quantiles, extremes.min, extremes.max),
         histogram: bins.scores.bins().to_vec(),
+        worst: Vec::new(),
         below: bins.below.iter().map(|(limit, count)| (limit.to_string(), *count)).collect(),
     }
 }
@@ -288,6 +299,10 @@ fn keep_measures(summary: &mut Summary, wanted: &[String]) {
     for shape in summary.shapes.values_mut() {
         shape.measures.retain(|code, _| is_wanted(code));
         shape.correlation.retain(|pair, _| pair.split(' ').all(is_wanted));
+    }
+    let regions = summary.regions.iter_mut().flat_map(|regions| &mut regions.list);
+    for shape in regions.flat_map(|region| region.shapes.values_mut()) {
+        shape.measures.retain(|code, _| is_wanted(code));
     }
 }
 

@@ -9,12 +9,14 @@ use std::thread;
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, select};
 
+use super::each::Each;
+use super::listing::Listing;
 use super::measure::{Bins, Workspace, measure};
 use super::merge::{Merged, Message, merge};
 use super::{Options, Progress};
 use crate::error::Result;
 use crate::formats::{Chunks, ElementLayout, ElementSink, Piece};
-use crate::mesh::{Chunk, Nodes, Shape};
+use crate::mesh::{Chunk, Nodes, Regions, Shape};
 
 /// What all workers share.
 struct Shared<'a> {
@@ -22,6 +24,9 @@ struct Shared<'a> {
     nodes: &'a Nodes,
     next: AtomicU64,
     options: &'a Options,
+    /// Where elements are tagged with their region and place.
+    regions: Option<&'a Regions>,
+    keeps_rows: bool,
     progress: &'a Progress,
 }
 
@@ -49,6 +54,8 @@ pub(super) fn measure_elements(
     nodes: &Nodes,
     threads: usize,
     options: &Options,
+    listing: Option<Listing<'_>>,
+    regions: &Regions,
     progress: &Progress,
 ) -> Result<(Merged, Bins)> {
     let window = 4 * threads + 2;
@@ -62,7 +69,10 @@ pub(super) fn measure_elements(
     for _ in 0..chunks_in_flight(threads) {
         empty_out.send(Chunk::new()).expect("the channel has room for every chunk");
     }
-    let shared = Shared { pieces, nodes, next: AtomicU64::new(0), options, progress };
+    let keeps_rows = listing.is_some();
+    let regions = Each::of(options, keeps_rows).map(|_| regions);
+    let next = AtomicU64::new(0);
+    let shared = Shared { pieces, nodes, next, options, regions, keeps_rows, progress };
     let ends = Ends { tickets, full_in, full_out, empty_in, empty_out, results };
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)
@@ -72,8 +82,8 @@ pub(super) fn measure_elements(
             })
             .collect();
         drop(ends);
-        let merged = merge(&results_in, ticket_out);
-        let mut bins = Bins::new(nodes.bounds().diagonal(), &options.judgement);
+        let merged = merge(&results_in, ticket_out, listing);
+        let mut bins = Bins::new(nodes.bounds().diagonal(), options);
         for worker in workers {
             match worker.join() {
                 Ok(theirs) => bins.merge(theirs),
@@ -93,8 +103,9 @@ struct Worker<'a> {
 
 impl<'a> Worker<'a> {
     fn new(shared: &'a Shared<'a>, ends: Ends) -> Self {
-        let bins = Bins::new(shared.nodes.bounds().diagonal(), &shared.options.judgement);
-        Self { shared, ends, work: Workspace::new(shared.options.frame), bins }
+        let bins = Bins::new(shared.nodes.bounds().diagonal(), shared.options);
+        let each = Each::of(shared.options, shared.keeps_rows);
+        Self { shared, ends, work: Workspace::new(shared.options.frame, each), bins }
     }
 
     /// Measures what others hand over and decodes pieces until there are none left.
@@ -126,7 +137,8 @@ impl<'a> Worker<'a> {
         let number = self.shared.next.fetch_add(1, Ordering::Relaxed);
         let Some(piece) = self.shared.pieces.get(number as usize) else { return false };
         let (shared, results) = (self.shared, self.ends.results.clone());
-        let mut sink = ElementSink::new(shared.nodes, self, number, shared.options.allow_missing_nodes);
+        let mut sink = ElementSink::new(shared.nodes, self, number, shared.options.allow_missing_nodes)
+            .tagging(shared.regions);
         let done = piece.layout.decode(piece.span.clone(), &mut sink);
         let at = sink.at;
         let done = done.and_then(|()| sink.finish()).map_err(|error| piece.layout.source().place(error, at));
@@ -166,9 +178,10 @@ fn measure_and_send(
     bins: &mut Bins,
     results: &Sender<Message>,
 ) {
-    let found = Box::new(measure(chunk, nodes, work, bins));
+    let (found, rows) = measure(chunk, nodes, work, bins);
+    let (origin, shape, found) = (chunk.origin(), chunk.shape(), Box::new(found));
     // A closed channel means that the merge stage has an error to report, which is the answer then.
-    let _ = results.send(Message::Chunk { origin: chunk.origin(), shape: chunk.shape(), found });
+    let _ = results.send(Message::Chunk { origin, shape, found, rows });
 }
 
 /// Tells the merge stage that a worker has ended, however it did.

@@ -3,6 +3,9 @@
 //! Doubles go into [`ShapeStatistics`], which the merge stage puts in order; whole numbers go into the worker's own
 //! [`Bins`], which may be added in any order.
 
+use super::Options;
+use super::each::{Block, ByRegion, Each, Rows};
+use super::worst::Worst;
 use crate::measures::batch::{Wide, at_widest};
 use crate::measures::{
     self, Corner, Family, Geometry, LANES, Lanes, MOST_MEASURES, QuadrilateralFlaws, Subject,
@@ -41,6 +44,8 @@ pub(super) struct ShapeStatistics {
     pub crossed: u64,
     /// Elements that enclose the axis of the frame.
     pub enclosing_axis: u64,
+    /// By region, where that was asked for.
+    pub regions: ByRegion,
 }
 
 /// How many, and the number of the first.
@@ -62,7 +67,7 @@ impl Hits {
         }
     }
 
-    fn merge(&mut self, other: &Self) {
+    pub(super) fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.first = self.first.or(other.first);
     }
@@ -88,6 +93,9 @@ impl ShapeStatistics {
         self.concave += other.concave;
         self.crossed += other.crossed;
         self.enclosing_axis += other.enclosing_axis;
+        for (region, theirs) in &other.regions {
+            self.regions.entry(*region).or_default().merge(theirs);
+        }
     }
 }
 
@@ -99,6 +107,8 @@ pub(super) struct Bins {
     diagonal: f64,
     /// Says which thresholds are counted.
     judgement: Judgement,
+    /// How many of the worst elements are kept a measure.
+    worst: usize,
 }
 
 /// Bins of one shape.
@@ -116,12 +126,14 @@ pub(super) struct MeasureBins {
     pub scores: Distribution,
     /// Number of values under a threshold, by threshold.
     pub below: Vec<(f64, u64)>,
+    pub worst: Worst,
 }
 
 impl Bins {
     /// Empty bins for a mesh whose bounds have the given diagonal.
-    pub(super) fn new(diagonal: f64, judgement: &Judgement) -> Self {
-        Self { shapes: [const { None }; Shape::ALL.len()], diagonal, judgement: judgement.clone() }
+    pub(super) fn new(diagonal: f64, options: &Options) -> Self {
+        let (judgement, worst) = (options.judgement.clone(), options.worst);
+        Self { shapes: [const { None }; Shape::ALL.len()], diagonal, judgement, worst }
     }
 
     /// The bins of a shape, if it was met.
@@ -134,6 +146,7 @@ impl Bins {
             let of = |subject: &Subject| {
                 let bins = |code| MeasureBins {
                     scores: Distribution::default(),
+                    worst: Worst::new(self.worst),
                     below: self
                         .judgement
                         .thresholds(code, shape)
@@ -163,6 +176,7 @@ impl ShapeBins {
     fn merge(&mut self, other: &Self) {
         for (mine, theirs) in self.measures.iter_mut().flatten().zip(other.measures.iter().flatten()) {
             mine.scores.merge(&theirs.scores);
+            mine.worst.merge(&theirs.worst);
             mine.below.iter_mut().zip(&theirs.below).for_each(|(mine, theirs)| mine.1 += theirs.1);
         }
         self.size.merge(&other.size);
@@ -177,12 +191,15 @@ pub(super) struct Workspace {
     geometry: Geometry,
     scores: [Lanes; MOST_MEASURES],
     flaws: QuadrilateralFlaws,
+    /// Where somebody asked for single elements.
+    each: Option<Box<Each>>,
 }
 
 impl Workspace {
-    pub(super) fn new(frame: Frame) -> Box<Self> {
+    pub(super) fn new(frame: Frame, each: Option<Box<Each>>) -> Box<Self> {
         Box::new(Self {
             frame: (frame != Frame::OWN).then_some(frame),
+            each,
             corners: [[[0.0; LANES]; 3]; Shape::MAX_CORNERS],
             geometry: Geometry::default(),
             scores: [[0.0; LANES]; MOST_MEASURES],
@@ -191,13 +208,13 @@ impl Workspace {
     }
 }
 
-/// Measures a chunk.
+/// Measures a chunk; the single elements come along where somebody takes them.
 pub(super) fn measure(
     chunk: &Chunk,
     nodes: &Nodes,
     work: &mut Workspace,
     bins: &mut Bins,
-) -> ShapeStatistics {
+) -> (ShapeStatistics, Option<Box<Rows>>) {
     let shape = chunk.shape();
     let signed = shape.dimension() == 3 || nodes.is_planar();
     let bins = bins.shape_mut(shape);
@@ -211,19 +228,30 @@ pub(super) fn measure(
         nodes.prefetch(&next[..next.len().min(block)]);
         gather(rows, nodes.rows(), shape.corners(), &mut work.corners);
         let first = position + (number * LANES) as u64;
+        let tags = chunk.tags().get(number * LANES..).unwrap_or_default();
+        let block = Block { shape, rows, labels, tags: &tags[..tags.len().min(LANES)], first };
+        if let Some(each) = &mut work.each {
+            each.start(&block, &work.corners[..shape.corners()]);
+        }
         measure_elements(shape, labels, signed, first, work, bins, &mut found);
         if let Some(frame) = &work.frame {
             found.enclosing_axis += frame.apply(&mut work.corners[..shape.corners()], labels.len());
         }
         for subject in 0..measures::subjects(shape).len() {
-            measure_subject(shape, subject, labels.len(), first, work, bins, &mut found);
+            measure_subject(subject, &block, work, bins, &mut found);
+        }
+        if let Some(each) = &mut work.each {
+            each.finish(&block, &work.geometry, signed, bins);
         }
     }
     // Positions decided between equal minima inside the chunk; from here on the element's number goes along.
     for extremes in found.subjects.iter_mut().flat_map(|m| &mut m.extremes).filter(|e| e.min_at != u64::MAX) {
         extremes.min_label = chunk.labels()[(extremes.min_at - position) as usize];
     }
-    found
+    let Some(each) = &mut work.each else { return (found, None) };
+    let (regions, rows) = each.take();
+    found.regions = regions;
+    (found, rows)
 }
 
 /// The position in the file of a chunk's first element, among elements of its shape.
@@ -320,30 +348,34 @@ fn most(first: f64, others: &[f64]) -> f64 {
 
 /// The measures of a subject: of the elements themselves or of each of their faces.
 fn measure_subject(
-    shape: Shape,
     subject: usize,
-    n: usize,
-    first: u64,
+    block: &Block<'_>,
     work: &mut Workspace,
     bins: &mut ShapeBins,
     found: &mut ShapeStatistics,
 ) {
-    let Workspace { corners, scores, flaws, .. } = work;
+    let Workspace { corners, scores, flaws, each, .. } = work;
     let bins = &mut bins.measures[subject];
     let moments = &mut found.subjects[subject];
-    let facts = shape.facts();
-    match measures::subjects(shape)[subject].family {
+    let (facts, n) = (block.shape.facts(), block.labels.len());
+    let mut record = |scores: &[Lanes]| {
+        record(scores, n, block.first, bins, moments);
+        if let Some(each) = each {
+            each.record(subject, &scores[..bins.len()], block);
+        }
+    };
+    match measures::subjects(block.shape)[subject].family {
         Family::Triangle => {
             for face in facts.triangles {
                 measures::triangles(face.map(|c| &corners[c]), scores);
-                record(scores, n, first, bins, moments);
+                record(scores);
             }
         }
         Family::Quadrilateral => {
             for face in facts.quadrilaterals {
                 let face = face.map(|c| &corners[c]);
                 measures::quadrilaterals(face, scores.first_chunk_mut().expect("three of five rows"));
-                record(scores, n, first, bins, moments);
+                record(scores);
                 measures::quadrilateral_flaws(face, flaws);
                 found.concave += count(&flaws.concave[..n]);
                 found.crossed += count(&flaws.crossing[..n]);
@@ -352,7 +384,7 @@ fn measure_subject(
         Family::Tetrahedron => {
             let element = [0, 1, 2, 3].map(|c| &corners[c]);
             measures::tetrahedra(element, scores.first_chunk_mut().expect("four of five rows"));
-            record(scores, n, first, bins, moments);
+            record(scores);
             found.ordered += at_widest(InOrder(&scores[..4], n));
         }
     }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender};
 
+use super::each::Rows;
+use super::listing::Listing;
 use super::measure::ShapeStatistics;
 use crate::error::{Error, Result};
 use crate::formats::Ledger;
@@ -16,7 +18,7 @@ type Done = Result<(Ledger, u32)>;
 /// What workers tell the merge stage.
 pub(super) enum Message {
     /// A chunk is measured.
-    Chunk { origin: Origin, shape: Shape, found: Box<ShapeStatistics> },
+    Chunk { origin: Origin, shape: Shape, found: Box<ShapeStatistics>, rows: Option<Box<Rows>> },
     /// A piece is decoded, into so many chunks; or it failed.
     Piece { number: u64, done: Done },
     /// A worker has panicked; its thread will say how.
@@ -37,6 +39,8 @@ pub(super) struct Merged {
 #[derive(Default)]
 struct Pending {
     chunks: BTreeMap<u32, (Shape, Box<ShapeStatistics>)>,
+    /// The single elements of the chunks, where somebody takes them.
+    rows: Vec<(Shape, Box<Rows>)>,
     done: Option<(Ledger, u32)>,
 }
 
@@ -47,8 +51,12 @@ impl Pending {
 }
 
 /// Merges until all workers have ended. Of several errors the first in the file counts: pieces are taken in order, so
-/// whoever fails, all pieces before it are still brought to their end.
-pub(super) fn merge(results: &Receiver<Message>, tickets: Sender<()>) -> Result<Merged> {
+/// whoever fails, all pieces before it are still brought to their end. Single elements go to `listing`, if there is one.
+pub(super) fn merge(
+    results: &Receiver<Message>,
+    tickets: Sender<()>,
+    mut listing: Option<Listing<'_>>,
+) -> Result<Merged> {
     let mut tickets = Some(tickets);
     let mut pending: BTreeMap<u64, Pending> = BTreeMap::new();
     let mut failed: Option<(u64, Error)> = None;
@@ -57,8 +65,10 @@ pub(super) fn merge(results: &Receiver<Message>, tickets: Sender<()>) -> Result<
     let mut next = 0;
     for message in results {
         match message {
-            Message::Chunk { origin, shape, found } => {
-                pending.entry(origin.piece).or_default().chunks.insert(origin.chunk, (shape, found));
+            Message::Chunk { origin, shape, found, rows } => {
+                let piece = pending.entry(origin.piece).or_default();
+                piece.chunks.insert(origin.chunk, (shape, found));
+                piece.rows.extend(rows.map(|rows| (shape, rows)));
             }
             Message::Piece { number, done: Ok(done) } => pending.entry(number).or_default().done = Some(done),
             Message::Piece { number, done: Err(error) } => {
@@ -70,7 +80,12 @@ pub(super) fn merge(results: &Receiver<Message>, tickets: Sender<()>) -> Result<
             Message::Panicked => tickets = None,
         }
         while pending.get(&next).is_some_and(Pending::is_complete) {
-            let piece = pending.remove(&next).unwrap_or_default();
+            let mut piece = pending.remove(&next).unwrap_or_default();
+            if let (Some(listing), None) = (&mut listing, &failed)
+                && let Err(error) = listing.piece(std::mem::take(&mut piece.rows))
+            {
+                (tickets, failed) = (None, Some((next, error)));
+            }
             next += 1;
             if let Some((found, _)) = &piece.done {
                 ledger.merge(found);

@@ -31,6 +31,12 @@ pub struct Options {
     pub limits: Limits,
     /// What the mesh is judged by.
     pub judgement: Judgement,
+    /// How many of the worst elements the summary names a measure.
+    pub worst: usize,
+    /// Whether the summary has statistics by region.
+    pub by_region: bool,
+    /// Most regions that there are statistics of.
+    pub most_regions: usize,
     /// Whether the summary tells of the run.
     pub run_info: bool,
     /// Where the run notes how far it is.
@@ -50,6 +56,9 @@ impl Default for Options {
             allow_missing_nodes: false,
             limits: Limits::default(),
             judgement: Judgement::default(),
+            worst: 0,
+            by_region: false,
+            most_regions: 1000,
             run_info: true,
             progress: None,
         }

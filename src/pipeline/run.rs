@@ -6,21 +6,34 @@ use std::time::{Instant, SystemTime};
 
 use super::assemble::{Found, assemble};
 use super::elements::{chunks_in_flight, measure_elements};
+use super::listing::Listing;
 use super::nodes::read_nodes;
 use super::{Options, Progress};
 use crate::error::{Error, Kind, Result};
 use crate::formats::{self, FORMATS, Format, HEAD_BYTES, Plan};
 use crate::input::{Budget, Input, looks_like};
-use crate::mesh::{CHUNK, NodesBuilder, Shape};
+use crate::mesh::{CHUNK, ElementWriter, NodesBuilder, Regions, Shape};
 use crate::summary::Summary;
 
+/// Most names of regions, where there are no statistics of them.
+const MOST_NAMES: usize = 1 << 20;
+
 /// Scores an open mesh.
-pub(super) fn run(input: &Input, options: &Options) -> Result<Summary> {
-    run_as(input, choose(input, options.format.as_deref())?, options)
+pub(super) fn run(
+    input: &Input,
+    options: &Options,
+    writer: Option<&mut dyn ElementWriter>,
+) -> Result<Summary> {
+    run_as(input, choose(input, options.format.as_deref())?, options, writer)
 }
 
 /// Scores an open mesh as one of the given format.
-pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Options) -> Result<Summary> {
+pub(super) fn run_as(
+    input: &Input,
+    format: &'static dyn Format,
+    options: &Options,
+    writer: Option<&mut dyn ElementWriter>,
+) -> Result<Summary> {
     let started = (SystemTime::now(), Instant::now());
     let named = |error: Error| error.in_format(format.name()).in_file(input.path());
     let quiet = Progress::default();
@@ -30,9 +43,11 @@ pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Optio
     // The hash needs every byte in order: it runs ahead beside the rest, which finds the bytes in memory then. Nobody
     // waits for the hash of a file that is bad.
     let stop = AtomicBool::new(false);
+    // Statistics by region cost memory, names hardly any.
+    let regions = Regions::new(if options.by_region { options.most_regions } else { MOST_NAMES });
     let (hash, measured) = thread::scope(|scope| {
         let hash = scope.spawn(|| input.xxh3_unless(&stop));
-        let measured = measure(input, format, options, threads, progress);
+        let measured = measure(input, format, options, writer, &regions, threads, progress);
         stop.store(measured.is_err(), Ordering::Relaxed);
         (hash.join(), measured)
     });
@@ -41,7 +56,8 @@ pub(super) fn run_as(input: &Input, format: &'static dyn Format, options: &Optio
         Ok(hash) => hash.expect("it is stopped for errors alone"),
         Err(panic) => std::panic::resume_unwind(panic),
     };
-    let found = Found { input, format, hash, nodes: &nodes, merged, bins, threads, started };
+    let found =
+        Found { input, format, hash, nodes: &nodes, regions: &regions, merged, bins, threads, started };
     assemble(found, options)
 }
 
@@ -50,6 +66,8 @@ fn measure(
     input: &Input,
     format: &dyn Format,
     options: &Options,
+    mut writer: Option<&mut dyn ElementWriter>,
+    regions: &Regions,
     threads: usize,
     progress: &Progress,
 ) -> Result<(crate::mesh::Nodes, super::merge::Merged, super::measure::Bins)> {
@@ -65,7 +83,12 @@ fn measure(
     let builder = NodesBuilder::new(&input.memory, &input.scratch);
     let nodes = read_nodes(&plan.nodes, threads, builder, progress)?;
     tracing::debug!(nodes = nodes.count(), spilled = nodes.is_spilled(), "nodes read");
-    let (mut merged, bins) = measure_elements(&plan.elements, &nodes, threads, options, progress)?;
+    let listing = writer.as_deref_mut().map(|writer| Listing::new(writer, regions));
+    let (mut merged, bins) =
+        measure_elements(&plan.elements, &nodes, threads, options, listing, regions, progress)?;
+    if let Some(writer) = writer {
+        writer.finish(&nodes)?;
+    }
     merged.ledger.merge(&plan.ledger);
     Ok((nodes, merged, bins))
 }

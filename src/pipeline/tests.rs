@@ -127,7 +127,7 @@ fn lattice(format: &'static Lattice, threads: usize, memory: u64) -> Result<Summ
     let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
     let input = Input::open(file.path(), &Limits::default(), &scratch)?;
     let options = Options { threads, memory, run_info: false, ..Options::default() };
-    run_as(&input, format, &options)
+    run_as(&input, format, &options, None)
 }
 
 fn text(mut summary: Summary) -> String {

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::details::{self, TextTable};
 use super::numbers::{score, spread};
 use super::safe::markdown;
 use super::{Style, head, layout};
@@ -28,7 +29,25 @@ pub fn render(summaries: &[Summary], _: &Style, out: &mut dyn Write) -> io::Resu
         }
         writeln!(out)?;
     }
+    for table in details::tables(summaries) {
+        write_details(&table, out)?;
+    }
     Ok(())
+}
+
+fn write_details(table: &TextTable, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "#### {}\n", markdown(&table.title))?;
+    if table.rows.is_empty() {
+        return Ok(());
+    }
+    let (texts, numbers) = (table.text_columns, table.header.len() - table.text_columns);
+    writeln!(out, "| {} |", table.header.join(" | "))?;
+    writeln!(out, "|{}{}", "---|".repeat(texts), "---:|".repeat(numbers))?;
+    for row in &table.rows {
+        let cells: Vec<_> = row.iter().map(|cell| markdown(cell)).collect();
+        writeln!(out, "| {} |", cells.join(" | "))?;
+    }
+    writeln!(out)
 }
 
 fn write_row(row: &layout::Row, out: &mut dyn Write) -> io::Result<()> {

@@ -4,6 +4,7 @@
 
 mod comparison;
 mod csv;
+mod details;
 mod head;
 mod json;
 mod layout;

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, TableStyle};
 
+use super::details::{self, TextTable};
 use super::layout::{self, Row};
 use super::numbers::{score, spread};
 use super::safe::escaped;
@@ -29,6 +30,13 @@ pub fn render(summaries: &[Summary], style: &Style, out: &mut dyn Write) -> io::
         write_lines(&measures(&table, style), out)?;
         writeln!(out)?;
     }
+    for table in details::tables(summaries) {
+        writeln!(out, "{}", bold(&table.title, style))?;
+        if !table.rows.is_empty() {
+            write_lines(&detailed(&table, style), out)?;
+        }
+        writeln!(out)?;
+    }
     Ok(())
 }
 
@@ -43,6 +51,22 @@ fn head_table(summary: &Summary, style: &Style) -> comfy_table::Table {
     }
     for (column, padding) in table.column_iter_mut().zip([(2, 1), (1, 0)]) {
         column.set_padding(padding);
+    }
+    table
+}
+
+fn detailed(found: &TextTable, style: &Style) -> comfy_table::Table {
+    let mut table = ruled(found.header.iter().map(|name| name.replace(' ', "\n")));
+    let width = style.width.map_or(usize::MAX, |_| usize::from(SHORTEST_NAME));
+    table.add_rows(found.rows.iter().map(|row| {
+        let cut = |(i, cell): (usize, &String)| if i == 0 { shortened(cell, width) } else { cell.clone() };
+        row.iter().enumerate().map(cut).collect::<Vec<_>>()
+    }));
+    for (i, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((if i == 0 { 2 } else { 1 }, 0));
+        if i >= found.text_columns {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
     }
     table
 }

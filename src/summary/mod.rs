@@ -6,6 +6,7 @@
 
 mod checks;
 mod reading;
+mod region;
 mod rule;
 mod verdict;
 
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::mesh::{Shape, System};
 
 pub use checks::Checks;
+pub use region::{Region, RegionMeasure, RegionShape, Regions, WorstElement};
 pub use rule::{GOOD, INVESTIGATE, PRESETS, Preset, Rule, STATISTICS, Statistic, Subject, preset};
 pub use verdict::{Expectation, Judgement, rules};
 
@@ -52,6 +54,9 @@ pub struct Summary {
     /// How the run went; left out where only the mesh matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub run: Option<Run>,
+    /// Statistics by region, where they were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regions: Option<Regions>,
 }
 
 /// The file that was scored.
@@ -163,6 +168,9 @@ pub struct MeasureSummary {
     /// Number of values under a threshold, by threshold: those that a rule of the verdict asks for.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub below: BTreeMap<String, u64>,
+    /// The worst elements, the worst first, where they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub worst: Vec<WorstElement>,
 }
 
 /// Sums over the elements of the mesh's own dimension: solids if there are any, else surfaces.

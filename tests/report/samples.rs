@@ -12,8 +12,20 @@ fn measure(on: &'static str, count: u64, row: (f64, f64, u64, f64, f64)) -> Meas
     histogram[((mean * 100.0) as usize).min(99)] = count;
     let quantiles = [("0.001", min + 0.01), ("0.01", 0.4), ("0.05", 0.55), ("0.5", mean), ("0.95", max)];
     let quantiles = quantiles.into_iter().map(|(p, q)| (p.to_owned(), q)).collect();
-    let below = BTreeMap::new();
-    MeasureSummary { on: on.into(), count, max, min, min_element, mean, sd, quantiles, histogram, below }
+    let (below, worst) = (BTreeMap::new(), vec![]);
+    MeasureSummary {
+        on: on.into(),
+        count,
+        max,
+        min,
+        min_element,
+        mean,
+        sd,
+        quantiles,
+        histogram,
+        below,
+        worst,
+    }
 }
 
 fn named<T>(rows: impl IntoIterator<Item = (&'static str, T)>) -> BTreeMap<String, T> {
@@ -72,6 +84,7 @@ pub fn mesh(name: &str, shapes: BTreeMap<Shape, ShapeSummary>) -> Summary {
         expected: None,
         verdict: Verdict { status: Status::Pass, reasons: vec![] },
         run: None,
+        regions: None,
     };
     Judgement::default().judge(&mut summary);
     summary

@@ -51,6 +51,8 @@ pub struct Score {
     pub measures: String,
     pub frame: System,
     pub stretch: [f64; 3],
+    pub worst: usize,
+    pub by_region: bool,
     pub allow_missing_nodes: bool,
     pub run_info: bool,
 }
@@ -92,6 +94,7 @@ pub struct Limits {
     pub line_bytes: Size,
     pub include_depth: usize,
     pub include_count: usize,
+    pub regions: usize,
 }
 
 /// `[watch]`
@@ -179,6 +182,8 @@ impl Default for Score {
             measures: "all".into(),
             frame: Frame::OWN.system,
             stretch: Frame::OWN.stretch,
+            worst: 0,
+            by_region: false,
             allow_missing_nodes: false,
             run_info: true,
         }
@@ -226,6 +231,7 @@ impl Default for Limits {
             line_bytes: Size(limits.line_bytes as u64),
             include_depth: limits.include_depth,
             include_count: limits.include_count,
+            regions: Options::default().most_regions,
         }
     }
 }
@@ -288,6 +294,9 @@ impl Default for Diagnostics {
     }
 }
 
+/// The most elements that a list of the worst may have: more belong into a file of all elements.
+pub const MOST_WORST: usize = 10_000;
+
 impl Config {
     /// Reads the file at `path`, or takes the defaults where none is given.
     pub fn read(path: Option<&Path>) -> anyhow::Result<Self> {
@@ -308,6 +317,7 @@ impl Config {
         let wrong = [
             (!self.compare.is_sound(), "compare: tolerances are numbers from 0 up".to_owned()),
             (!stretches, "score.stretch must be three numbers over 0".to_owned()),
+            (self.score.worst > MOST_WORST, format!("score.worst must be at most {MOST_WORST}")),
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
             (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),
             (self.watch.depth == 0, "watch.depth must be at least 1".to_owned()),
@@ -366,6 +376,9 @@ impl Config {
                 include_count: limits.include_count,
             },
             judgement: self.verdict.judgement()?,
+            worst: score.worst,
+            by_region: score.by_region,
+            most_regions: limits.regions,
             run_info: score.run_info,
             progress: None,
         })

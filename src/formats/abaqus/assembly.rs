@@ -61,12 +61,14 @@ pub(super) enum NodeBlock {
 
 /// Elements, as they stand in the deck or were made.
 pub(super) enum ElementBlock {
-    Lines(Arc<Block<Kind>>),
+    /// With the set that they all are in, `ELSET=`.
+    Lines(Arc<Block<Kind>>, Option<String>),
     Made(MadeElements),
 }
 
 /// A `*PART`.
 pub(super) struct Part {
+    pub(super) name: String,
     pub(super) blocks: Blocks,
     pub(super) place: Place,
 }
@@ -74,16 +76,18 @@ pub(super) struct Part {
 /// An `*INSTANCE`.
 pub(super) struct Instance {
     pub(super) part: usize,
+    pub(super) name: Option<String>,
     pub(super) own: Blocks,
     pub(super) motion: Affine,
     pub(super) place: Place,
 }
 
 impl Blocks {
-    /// Yields the pieces as a copy with the given scope and motion.
+    /// Yields the pieces as a copy with the given scope and motion; `owner` is the part or the instance.
     pub(super) fn yield_to(
         &self,
         out: &mut dyn Outline,
+        owner: Option<&str>,
         scope: u64,
         motion: Affine,
         instances: Option<&Arc<HashMap<Vec<u8>, u64>>>,
@@ -107,8 +111,8 @@ impl Blocks {
             }
         }
         for block in &self.elements {
-            let block = match block {
-                ElementBlock::Lines(block) => block,
+            let (block, set) = match block {
+                ElementBlock::Lines(block, set) => (block, set),
                 ElementBlock::Made(made) => {
                     made.yield_to(out, scope)?;
                     continue;
@@ -117,6 +121,7 @@ impl Blocks {
             let layout: Arc<dyn ElementLayout> = Arc::new(ElementLines {
                 source: Arc::clone(&block.source),
                 kind: block.what.clone(),
+                region: region(owner, set.as_deref()),
                 scope,
                 instances: instances.cloned(),
             });
@@ -125,6 +130,14 @@ impl Blocks {
             }
         }
         Ok(())
+    }
+}
+
+/// The region of elements of a set and of an owner: `STEEL`, `PART-1-1`, `PART-1-1.STEEL`.
+fn region(owner: Option<&str>, set: Option<&str>) -> Option<String> {
+    match (owner, set) {
+        (Some(owner), Some(set)) => Some(format!("{owner}.{set}")),
+        (owner, set) => owner.or(set).map(str::to_owned),
     }
 }
 

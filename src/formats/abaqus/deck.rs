@@ -223,8 +223,9 @@ impl<'a> Deck<'a> {
                 let spans = cut_at_records(self.input, source, &what, line..range.end)?;
                 let block = Arc::new(Block { source: Arc::clone(source), spans, what });
                 let blocks = self.blocks();
+                let name = set.as_deref().map(plain);
                 blocks.maker.note(Noted::Elements(Arc::clone(&block), set));
-                blocks.elements.push(ElementBlock::Lines(block));
+                blocks.elements.push(ElementBlock::Lines(block, name));
                 self.flush()
             }
         }
@@ -244,7 +245,7 @@ impl<'a> Deck<'a> {
     fn flush(&mut self) -> Result<()> {
         if self.parts.is_empty() {
             self.seen.note(&self.outside);
-            self.outside.yield_to(self.out, 0, Affine::IDENTITY, None)?;
+            self.outside.yield_to(self.out, None, 0, Affine::IDENTITY, None)?;
             self.outside.nodes.clear();
             self.outside.elements.clear();
         }
@@ -346,7 +347,8 @@ impl<'a> Deck<'a> {
         if self.part_names.insert(name.clone(), self.parts.len()).is_some() {
             return Err(Error::malformed("a part name of its own", excerpt(&name)));
         }
-        self.parts.push(Part { blocks: Blocks::default(), place: place.clone() });
+        let name = plain(&name);
+        self.parts.push(Part { name, blocks: Blocks::default(), place: place.clone() });
         self.level = Level::Part;
         self.frame = Affine::IDENTITY;
         Ok(())
@@ -368,11 +370,13 @@ impl<'a> Deck<'a> {
         if self.instances.len() >= MOST_INSTANCES {
             return Err(Error::limit("number of instances", MOST_INSTANCES));
         }
-        if let Some(name) = keyword.label("NAME")? {
+        let name = keyword.label("NAME")?;
+        if let Some(name) = name.clone() {
             self.scopes.insert(name, scope(self.instances.len()));
         }
+        let name = name.map(|name| plain(&name));
         let (own, motion) = (Blocks::default(), Affine::IDENTITY);
-        self.instances.push(Instance { part, own, motion, place: place.clone() });
+        self.instances.push(Instance { part, name, own, motion, place: place.clone() });
         self.level = Level::Instance;
         self.frame = Affine::IDENTITY;
         self.open = Open::Motion(Vec::new());
@@ -402,21 +406,24 @@ impl<'a> Deck<'a> {
         let nothing = Blocks::default();
         let mut copies = Vec::new();
         if self.instances.is_empty() {
-            copies.extend(self.parts.iter().map(|part| (&part.blocks, &nothing, Affine::IDENTITY)));
+            for part in &self.parts {
+                copies.push((Some(part.name.as_str()), &part.blocks, &nothing, Affine::IDENTITY));
+            }
         }
-        for Instance { part, own, motion, .. } in &self.instances {
-            copies.push((&self.parts[*part].blocks, own, *motion));
+        for Instance { part, name, own, motion, .. } in &self.instances {
+            let part = &self.parts[*part];
+            copies.push((Some(name.as_ref().unwrap_or(&part.name).as_str()), &part.blocks, own, *motion));
         }
-        for (number, (blocks, own, motion)) in copies.into_iter().enumerate() {
+        for (number, (owner, blocks, own, motion)) in copies.into_iter().enumerate() {
             self.seen.note(blocks);
             self.seen.note(own);
-            blocks.yield_to(self.out, scope(number), motion, None)?;
-            own.yield_to(self.out, scope(number), motion, None)?;
+            blocks.yield_to(self.out, owner, scope(number), motion, None)?;
+            own.yield_to(self.out, owner, scope(number), motion, None)?;
         }
         self.seen.note(&self.outside);
         let scopes = Arc::new(self.scopes);
         let instances = Some(&scopes).filter(|scopes| !scopes.is_empty());
-        self.outside.yield_to(self.out, 0, Affine::IDENTITY, instances)?;
+        self.outside.yield_to(self.out, None, 0, Affine::IDENTITY, instances)?;
         if let Some(missing) = self.seen.missing() {
             let source = &self.input.source;
             let error = Error::malformed("a mesh", format!("a deck that has no *{missing} data"));

@@ -23,6 +23,8 @@ pub(super) const MOST_NODES: usize = 1 << 16;
 pub(super) struct ElementLines {
     pub(super) source: Arc<Source>,
     pub(super) kind: Kind,
+    /// The element set or the instance that the elements are in.
+    pub(super) region: Option<String>,
     /// The instance, in the bits above the nodes' own numbers.
     pub(super) scope: u64,
     /// Scopes by instance name, for elements of the assembly: `Part-1-1.12`.
@@ -35,6 +37,9 @@ impl ElementLayout for ElementLines {
     }
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
+        if let Some(region) = &self.region {
+            out.region(0, || region.clone())?;
+        }
         let window = self.source.window(span.clone());
         let mut fields = Fields::new(&window);
         let done = self.records(&mut fields, span.start, out);

@@ -52,6 +52,10 @@ impl Format for Abaqus {
         detect::is_abaqus(head)
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("element sets and instances")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         if detect::is_utf16(input.source.peek(0..HEAD_BYTES as u64)) {
             let error = Error::malformed("text of one byte a character, as ASCII or UTF-8", "UTF-16");

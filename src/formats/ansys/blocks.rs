@@ -67,6 +67,11 @@ impl ElementLayout for ElementRows {
             ids.clear();
             let label = self.number(line.bytes, if self.solid { 10 } else { 0 }, "an element number")?;
             let number = self.number(line.bytes, 1, "a type number")?;
+            if out.wants_regions() {
+                let material =
+                    self.number(line.bytes, if self.solid { 0 } else { 3 }, "a material number")?;
+                out.region(material, || material.to_string())?;
+            }
             if self.solid {
                 let nodes = self.nodes(line.bytes)?;
                 let mut from = SOLID_HEAD;

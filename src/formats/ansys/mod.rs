@@ -54,6 +54,10 @@ impl Format for Ansys {
         block
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("materials")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let source = &input.source;
         let mut lines = LineReader::new(source, &input.limits, 0);

@@ -4,6 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::groups::Groups;
 use super::walk::{Gathered, Walk};
 use super::words::Binary;
 use super::{Version, types};
@@ -18,6 +19,7 @@ pub(super) fn outline(
     walk: &mut Walk<'_>,
     version: Version,
     binary: Binary,
+    groups: Arc<Groups>,
     out: &mut dyn Outline,
 ) -> Result<()> {
     let tagged = version == Version::V2;
@@ -27,7 +29,7 @@ pub(super) fn outline(
     } else {
         binary.block_counts(walk)?
     };
-    let layout = Arc::new(ElementBlocks { source: Arc::clone(walk.source), binary, tagged });
+    let layout = Arc::new(ElementBlocks { source: Arc::clone(walk.source), binary, tagged, groups });
     let emit = |out: &mut dyn Outline, span: Option<Range<u64>>| match span {
         Some(span) => out.elements(Piece { layout: layout.clone(), span }),
         None => Ok(()),
@@ -49,7 +51,12 @@ pub(super) fn outline(
         }
         emit(out, gathered.take(start))?;
         gathered = Gathered::new(body.end);
-        let run = Arc::new(ElementRecords { source: Arc::clone(walk.source), binary, block });
+        let run = Arc::new(ElementRecords {
+            source: Arc::clone(walk.source),
+            binary,
+            block,
+            groups: layout.groups.clone(),
+        });
         cut_records(run.block.elements, width, |span| {
             let span = body.start + span.start * width..body.start + span.end * width;
             out.elements(Piece { layout: run.clone(), span })
@@ -65,6 +72,7 @@ struct ElementRecords {
     source: Arc<Source>,
     binary: Binary,
     block: Block,
+    groups: Arc<Groups>,
 }
 
 impl ElementLayout for ElementRecords {
@@ -73,7 +81,7 @@ impl ElementLayout for ElementRecords {
     }
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
-        self.block.decode(self.binary, span.start, &self.source.window(span), out)
+        self.block.decode(self.binary, &self.groups, span.start, &self.source.window(span), out)
     }
 }
 
@@ -83,6 +91,7 @@ struct ElementBlocks {
     source: Arc<Source>,
     binary: Binary,
     tagged: bool,
+    groups: Arc<Groups>,
 }
 
 impl ElementBlocks {
@@ -108,7 +117,7 @@ impl ElementLayout for ElementBlocks {
             let Some((records, after)) = body.split_at_checked(bytes) else {
                 return Err(Error::malformed("a whole block of elements", "less"));
             };
-            block.decode(self.binary, at, records, out)?;
+            block.decode(self.binary, &self.groups, at, records, out)?;
             rest = after;
         }
         Ok(())
@@ -122,16 +131,19 @@ struct Block {
     elements: u64,
     /// Number of words between an element's number and its nodes.
     tags: usize,
+    /// Dimension and tag of the entity, in MSH 4.
+    entity: Option<(u8, i64)>,
 }
 
 impl Block {
     fn read(binary: Binary, tagged: bool, head: &[u8]) -> Result<Self> {
         let endian = binary.endian;
         if !tagged {
-            binary.dimension(head)?;
+            let dimension = binary.dimension(head)? as u8;
+            let entity = Some((dimension, i64::from(endian.u32(&head[4..]) as i32)));
             let (kind, elements) =
                 (types::by_number(endian.u32(&head[8..]).into())?, binary.count(&head[12..])?);
-            return Ok(Self { kind, elements, tags: 0 });
+            return Ok(Self { kind, elements, tags: 0, entity });
         }
         let kind = types::by_number(endian.u32(head).into())?;
         let elements = binary.count(&head[4..])?;
@@ -141,7 +153,7 @@ impl Block {
                 format!("binary Gmsh MSH 2 does not store the nodes of a {}: it cannot be read", kind.name);
             return Err(Error::unsupported(what));
         }
-        Ok(Self { kind, elements, tags })
+        Ok(Self { kind, elements, tags, entity: None })
     }
 
     /// Bytes of a record: number, tags, nodes.
@@ -150,11 +162,50 @@ impl Block {
     }
 
     /// Decodes whole records, which start at byte `at` of the file.
-    fn decode(&self, binary: Binary, at: u64, records: &[u8], out: &mut ElementSink<'_>) -> Result<()> {
+    fn decode(
+        &self,
+        binary: Binary,
+        groups: &Groups,
+        at: u64,
+        records: &[u8],
+        out: &mut ElementSink<'_>,
+    ) -> Result<()> {
+        match self.entity {
+            Some((dimension, entity)) => groups.enter_entity(dimension, entity, out)?,
+            None if out.wants_regions() => return self.decode_tagged(binary, groups, at, records, out),
+            None => {}
+        }
         match binary.word {
             4 => self.decode_words::<4>(binary, at, records, out),
             _ => self.decode_words::<8>(binary, at, records, out),
         }
+    }
+
+    /// Decodes records of MSH 2, whose first tag is their physical group, run by run of one group.
+    fn decode_tagged(
+        &self,
+        binary: Binary,
+        groups: &Groups,
+        at: u64,
+        records: &[u8],
+        out: &mut ElementSink<'_>,
+    ) -> Result<()> {
+        let group = |record: &[u8]| match self.tags {
+            0 => 0,
+            _ => i64::from(binary.endian.u32(&record[binary.word..]) as i32),
+        };
+        let width = self.width(binary);
+        let (mut from, mut to) = (0, 0);
+        while from < records.len() {
+            let tag = group(&records[from..]);
+            while to < records.len() && group(&records[to..]) == tag {
+                to += width;
+            }
+            groups.enter(self.kind, tag, out)?;
+            self.decode_words::<4>(binary, at + from as u64, &records[from..to], out)?;
+            from = to;
+        }
+        Ok(())
     }
 
     /// The numbers of nodes that nearly all meshes are made of have a loop of their own.

@@ -3,6 +3,7 @@
 
 mod binary_elements;
 mod binary_nodes;
+mod groups;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -12,10 +13,13 @@ mod types;
 mod walk;
 mod words;
 
+use std::sync::Arc;
+
 use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
 use crate::formats::{Format, Outline, text};
 use crate::input::Input;
+use groups::Groups;
 use rows::Rows;
 use text_nodes::Columns;
 use walk::Walk;
@@ -47,9 +51,14 @@ impl Format for Gmsh {
                 .any(|line| matches!(line.bytes.trim_ascii_end(), b"$MeshFormat" | b"$NOD"))
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("physical groups")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let mut walk = Walk::new(input);
         let mut header = None;
+        let mut groups = Groups::default();
         let (mut nodes, mut elements) = (false, false);
         while let Some(name) = walk.section()? {
             let first = matches!(name.as_str(), "NOD" | "ELM");
@@ -64,8 +73,17 @@ impl Format for Gmsh {
                     nodes = true;
                 }
                 "ELM" | "Elements" => {
-                    outline_elements(&mut walk, known, out)?;
+                    outline_elements(&mut walk, known, std::mem::take(&mut groups), out)?;
                     elements = true;
+                }
+                "PhysicalNames" => {
+                    groups.read_names(&mut walk, &end)?;
+                    continue;
+                }
+                "Entities" if header.is_some_and(Header::has_entities) => {
+                    let Header { version, binary } = self::known(header, &walk)?;
+                    groups.read_entities(&mut walk, version, binary, &end)?;
+                    continue;
                 }
                 _ => {
                     walk.skip_to(&end)?;
@@ -108,12 +126,20 @@ fn outline_nodes(
     }
 }
 
-fn outline_elements(walk: &mut Walk<'_>, header: Option<Header>, out: &mut dyn Outline) -> Result<()> {
+fn outline_elements(
+    walk: &mut Walk<'_>,
+    header: Option<Header>,
+    groups: Groups,
+    out: &mut dyn Outline,
+) -> Result<()> {
+    let groups = Arc::new(groups);
     let header = known(header, walk)?;
     match (header.version, header.binary) {
-        (Version::V1 | Version::V2, None) => text_elements::outline_rows(walk, header.version, out),
-        (Version::V40 | Version::V41, None) => text_elements::outline_blocks(walk, header.version, out),
-        (_, Some(binary)) => binary_elements::outline(walk, header.version, binary, out),
+        (Version::V1 | Version::V2, None) => text_elements::outline_rows(walk, header.version, groups, out),
+        (Version::V40 | Version::V41, None) => {
+            text_elements::outline_blocks(walk, header.version, groups, out)
+        }
+        (_, Some(binary)) => binary_elements::outline(walk, header.version, binary, groups, out),
     }
 }
 
@@ -140,6 +166,11 @@ enum Version {
 
 impl Header {
     const FIRST: Header = Header { version: Version::V1, binary: None };
+
+    /// Whether a section `$Entities` says which groups the blocks of elements are in.
+    fn has_entities(self) -> bool {
+        matches!(self.version, Version::V40 | Version::V41)
+    }
 
     fn read(walk: &mut Walk<'_>) -> Result<Self> {
         let what = "version, file type (0 or 1) and data size";
@@ -197,20 +228,18 @@ impl Version {
         Ok(counts)
     }
 
-    /// The entity that a block belongs to; gives its dimension.
-    fn entity(self, row: &mut Rows<'_>) -> Result<u64> {
-        let tag = "the tag of an entity";
-        if self == Version::V40 {
-            row.signed(tag)?;
-        }
+    /// The entity that a block belongs to: its dimension and its tag.
+    fn entity(self, row: &mut Rows<'_>) -> Result<(u64, i64)> {
+        let what = "the tag of an entity";
+        let mut tag = if self == Version::V40 { row.signed(what)? } else { 0 };
         let dimension = row.integer("the dimension of an entity")?;
         if dimension > 3 {
             return Err(no_dimension(dimension as i64));
         }
         if self == Version::V41 {
-            row.signed(tag)?;
+            tag = row.signed(what)?;
         }
-        Ok(dimension)
+        Ok((dimension, tag))
     }
 
     /// Number of rows that a node takes in a block of MSH 4.

@@ -60,10 +60,12 @@ impl<'t> Rows<'t> {
     }
 
     /// The next number of the row, of either sign.
-    pub(super) fn signed(&mut self, what: &str) -> Result<()> {
+    pub(super) fn signed(&mut self, what: &str) -> Result<i64> {
         self.skip_blanks();
-        self.at += usize::from(self.bytes.get(self.at) == Some(&b'-'));
-        self.integer(what).map(drop)
+        let negative = self.bytes.get(self.at) == Some(&b'-');
+        self.at += usize::from(negative);
+        let value = self.integer(what)? as i64;
+        Ok(if negative { value.wrapping_neg() } else { value })
     }
 
     /// The next number of the row as a real one.

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Version;
+use super::groups::Groups;
 use super::rows::Rows;
 use super::walk::{Gathered, Walk};
 use crate::error::{Error, Result};
@@ -16,17 +17,28 @@ const LABEL: &str = "an element's number";
 const NODE: &str = "the tag of an element's node";
 
 /// Finds the rows of a section of MSH 1 or 2.
-pub(super) fn outline_rows(walk: &mut Walk<'_>, version: Version, out: &mut dyn Outline) -> Result<()> {
+pub(super) fn outline_rows(
+    walk: &mut Walk<'_>,
+    version: Version,
+    groups: Arc<Groups>,
+    out: &mut dyn Outline,
+) -> Result<()> {
     let count = walk.row("the number of elements", |row| row.integer("the number of elements"))?;
-    let layout: Arc<dyn ElementLayout> = Arc::new(TaggedRows { source: Arc::clone(walk.source), version });
+    let layout: Arc<dyn ElementLayout> =
+        Arc::new(TaggedRows { source: Arc::clone(walk.source), version, groups });
     cut_rows(walk, count, &layout, out)
 }
 
 /// Finds the blocks of a section of MSH 4.
-pub(super) fn outline_blocks(walk: &mut Walk<'_>, version: Version, out: &mut dyn Outline) -> Result<()> {
+pub(super) fn outline_blocks(
+    walk: &mut Walk<'_>,
+    version: Version,
+    groups: Arc<Groups>,
+    out: &mut dyn Outline,
+) -> Result<()> {
     let what = "the numbers of blocks and elements";
     let (blocks, elements) = walk.row(what, |row| version.block_counts(row))?;
-    let whole = Arc::new(ElementBlocks { source: Arc::clone(walk.source), version });
+    let whole = Arc::new(ElementBlocks { source: Arc::clone(walk.source), version, groups: groups.clone() });
     let emit = |out: &mut dyn Outline, span: Option<Range<u64>>| match span {
         Some(span) => out.elements(Piece { layout: whole.clone(), span }),
         None => Ok(()),
@@ -38,16 +50,17 @@ pub(super) fn outline_blocks(walk: &mut Walk<'_>, version: Version, out: &mut dy
         let block = walk.row("the first line of a block of elements", |row| Block::read(row, version))?;
         found = found.saturating_add(block.elements);
         let body = walk.at();
-        let rows = walk.rows(block.elements, PIECE_BYTES, ROW)?;
-        if rows == block.elements {
+        let elements = block.elements;
+        let rows = walk.rows(elements, PIECE_BYTES, ROW)?;
+        if rows == elements {
             emit(out, gathered.add(walk.at()))?;
             continue;
         }
         emit(out, gathered.take(start))?;
         let layout: Arc<dyn ElementLayout> =
-            Arc::new(ElementRows { source: Arc::clone(walk.source), kind: block.kind });
+            Arc::new(ElementRows { source: Arc::clone(walk.source), block, groups: groups.clone() });
         out.elements(Piece { layout: layout.clone(), span: body..walk.at() })?;
-        cut_rows(walk, block.elements - rows, &layout, out)?;
+        cut_rows(walk, elements - rows, &layout, out)?;
         gathered = Gathered::new(walk.at());
     }
     emit(out, gathered.take(walk.at()))?;
@@ -74,6 +87,7 @@ fn cut_rows(
 struct TaggedRows {
     source: Arc<Source>,
     version: Version,
+    groups: Arc<Groups>,
 }
 
 impl ElementLayout for TaggedRows {
@@ -91,9 +105,12 @@ impl ElementLayout for TaggedRows {
             let kind = rows.kind()?;
             let first = self.version == Version::V1;
             let tags = if first { 2 } else { rows.integer("the number of an element's tags")? };
-            for _ in 0..tags {
-                rows.signed("an element's tag")?;
+            let mut group = 0;
+            for k in 0..tags {
+                let tag = rows.signed("an element's tag")?;
+                group = if k == 0 { tag } else { group };
             }
+            self.groups.enter(kind, group, out)?;
             let mut nodes = kind.nodes as u64;
             if first || nodes == 0 {
                 nodes = number_of_nodes(&mut rows, kind)?;
@@ -122,7 +139,8 @@ fn number_of_nodes(rows: &mut Rows<'_>, kind: &ElementType) -> Result<u64> {
 #[derive(Debug)]
 struct ElementRows {
     source: Arc<Source>,
-    kind: &'static Arc<ElementType>,
+    block: Block,
+    groups: Arc<Groups>,
 }
 
 impl ElementLayout for ElementRows {
@@ -132,7 +150,8 @@ impl ElementLayout for ElementRows {
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
         let window = self.source.window(span.clone());
-        read_rows(&mut Rows::new(span.start, &window), u64::MAX, self.kind, &mut Vec::new(), out)
+        self.block.enter(&self.groups, out)?;
+        read_rows(&mut Rows::new(span.start, &window), u64::MAX, self.block.kind, &mut Vec::new(), out)
     }
 }
 
@@ -170,6 +189,7 @@ fn read_rows(
 struct ElementBlocks {
     source: Arc<Source>,
     version: Version,
+    groups: Arc<Groups>,
 }
 
 impl ElementLayout for ElementBlocks {
@@ -185,6 +205,7 @@ impl ElementLayout for ElementBlocks {
             out.at = rows.spot();
             let block = Block::read(&mut rows, self.version)?;
             rows.end()?;
+            block.enter(&self.groups, out)?;
             read_rows(&mut rows, block.elements, block.kind, &mut ids, out)?;
         }
         Ok(())
@@ -192,14 +213,22 @@ impl ElementLayout for ElementBlocks {
 }
 
 /// The first line of a block.
+#[derive(Debug)]
 struct Block {
+    /// Dimension and tag of the entity.
+    entity: (u64, i64),
     kind: &'static Arc<ElementType>,
     elements: u64,
 }
 
 impl Block {
     fn read(row: &mut Rows<'_>, version: Version) -> Result<Self> {
-        version.entity(row)?;
-        Ok(Self { kind: row.kind()?, elements: row.integer("the number of elements of a block")? })
+        let entity = version.entity(row)?;
+        Ok(Self { entity, kind: row.kind()?, elements: row.integer("the number of elements of a block")? })
+    }
+
+    /// Says which region its elements are in.
+    fn enter(&self, groups: &Groups, out: &mut ElementSink<'_>) -> Result<()> {
+        groups.enter_entity(self.entity.0 as u8, self.entity.1, out)
     }
 }

@@ -220,7 +220,7 @@ struct Block {
 
 impl Block {
     fn read(row: &mut Rows<'_>, version: Version) -> Result<Self> {
-        let dimension = version.entity(row)?;
+        let (dimension, _) = version.entity(row)?;
         let parametric = row.integer("whether nodes are parametric")?;
         let nodes = row.integer("the number of nodes of a block")?;
         match parametric {

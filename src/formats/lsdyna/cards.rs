@@ -201,6 +201,7 @@ impl ElementLayout for ElementCards {
                     more -= 1;
                 }
                 out.at = Spot::Text(line.at);
+                out.region(head[1], || head[1].to_string())?;
                 solids::put(&self.cards, head[0], &mut ids, self.by_gmsh, out)?;
             }
             for _ in 0..more {

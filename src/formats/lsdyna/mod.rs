@@ -68,6 +68,10 @@ impl Format for Lsdyna {
         false
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("parts")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let mut siblings = Siblings::new(input);
         let main = siblings.main();

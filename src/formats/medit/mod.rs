@@ -39,6 +39,10 @@ impl Format for Medit {
         binary::endian(head).is_some() || text::is_text(head)
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("references")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         match binary::endian(input.source.peek(0..12)) {
             Some(endian) => binary::outline(input, endian, out),

@@ -54,6 +54,11 @@ impl<'w> Reader<'w> {
         self.fields.read(line, &mut self.cards, card.first + card.most)?;
         let label = self.fields.positive(0, "an element number")?;
         let kind = nodes(card, &self.fields, &mut self.ids)?;
+        if out.wants_regions() {
+            // A blank property is that of the element's own number.
+            let property = text::integer(self.fields.get(1)).unwrap_or(label);
+            out.region(property, || property.to_string())?;
+        }
         out.element(label, kind, &self.ids)
     }
 

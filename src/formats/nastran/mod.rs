@@ -64,6 +64,10 @@ impl Format for Nastran {
         &[Shape::Hexahedron]
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("property numbers")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let stretches = Walk::of(input)?;
         let end = |expected: &str| {

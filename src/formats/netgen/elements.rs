@@ -49,9 +49,13 @@ impl ElementLayout for ElementLines {
                 continue;
             }
             out.at = numbers.spot();
-            for _ in 0..properties {
-                numbers.reference("a property of an element")?;
+            let mut region = 0;
+            for k in 0..properties {
+                let property = numbers.reference("a property of an element")?;
+                // Of a volume the material; of a surface the boundary condition, which comes second.
+                region = if k < 2 { property } else { region };
             }
+            out.region(region as u64, || region.to_string())?;
             let nodes = numbers.integer("the number of an element's points")?;
             let kind = match last {
                 Some(kind) if kind.nodes as u64 == nodes => kind,

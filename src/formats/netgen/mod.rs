@@ -53,6 +53,10 @@ impl Format for Netgen {
         lines.find(|line| !line.is_empty() && line[0] != COMMENT) == Some(b"mesh3d")
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("materials and boundary conditions")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let lines = LineReader::new(&input.source, &input.limits, 0);
         let mut reader =

@@ -54,7 +54,7 @@ impl<'t> Numbers<'t> {
 
     /// Passes a whole number of either sign.
     #[inline]
-    pub fn reference(&mut self, what: &str) -> Result<()> {
+    pub fn reference(&mut self, what: &str) -> Result<i64> {
         self.more();
         let start = self.at;
         self.at += usize::from(matches!(self.bytes.get(self.at), Some(b'-' | b'+')));
@@ -63,9 +63,13 @@ impl<'t> Numbers<'t> {
         if digits == 0 || !self.ends_here() {
             // Some writers have references as real numbers.
             self.at = start;
-            self.real(what)?;
+            return self.real(what).map(|value| value as i64);
         }
-        Ok(())
+        // A sign and digits: what does not fit is no region that anybody could tell from others.
+        Ok(std::str::from_utf8(&self.bytes[start..self.at])
+            .ok()
+            .and_then(|t| t.parse().ok())
+            .unwrap_or(i64::MAX))
     }
 
     /// The next number as a real one.

@@ -27,6 +27,11 @@ impl Words {
         if self.word == 4 { self.endian.u32(bytes).into() } else { self.endian.u64(bytes) }
     }
 
+    /// A whole number of either sign, as [`Self::integer`] gives it.
+    pub fn signed(self, number: u64) -> i64 {
+        if self.word == 4 { i64::from(number as u32 as i32) } else { number as i64 }
+    }
+
     /// The real number at the start of `bytes`.
     #[inline]
     pub fn real(self, bytes: &[u8]) -> f64 {
@@ -109,7 +114,7 @@ pub struct ElementRecords {
     pub words: Words,
     /// Where the first record starts.
     pub at: u64,
-    /// Bytes of a record, which begins with the numbers of the nodes.
+    /// Bytes of a record, which begins with the numbers of the nodes; a word that follows is the region.
     pub width: usize,
     /// The elements' type.
     pub kind: &'static Arc<ElementType>,
@@ -156,11 +161,25 @@ impl ElementRecords {
             for (ids, record) in ids.iter_mut().zip(block.chunks_exact(self.width)) {
                 good &= self.words.ids::<WORD>(record, ids);
             }
-            if !good || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())? {
+            // Where somebody asks for regions, each element has its own.
+            let alike = !out.wants_regions() || self.width == NODES * WORD;
+            if !good || !alike || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())? {
                 self.decode_any::<WORD>(first, block, out)?;
             }
         }
         Ok(())
+    }
+
+    /// The word after the nodes, if there is one, is the region.
+    #[inline]
+    fn enter_region<const WORD: usize>(&self, record: &[u8], out: &mut ElementSink<'_>) -> Result<()> {
+        match record.get(self.kind.nodes * WORD..).filter(|rest| rest.len() >= WORD) {
+            Some(rest) => {
+                let reference = self.words.integer(rest);
+                out.region(reference, || self.words.signed(reference).to_string())
+            }
+            None => Ok(()),
+        }
     }
 
     /// Record by record: elements with many nodes, and blocks with an error in them, which this finds.
@@ -176,6 +195,7 @@ impl ElementRecords {
             if !self.words.ids::<WORD>(record, &mut ids) {
                 return Err(negative(&ids, WORD));
             }
+            self.enter_region::<WORD>(record, out)?;
             out.element(self.first + number, self.kind, &ids)?;
         }
         Ok(())

@@ -16,7 +16,7 @@ pub struct Table<'w> {
     pub what: &'w str,
     /// Number of rows that it says to have.
     pub rows: u64,
-    /// Numbers after those that are read, in each row.
+    /// Numbers after those that are read, in each row; of elements, the region.
     pub extra: usize,
     /// Number of its first node or element.
     pub first: u64,
@@ -129,7 +129,8 @@ impl ElementLayout for ElementRows {
                 *id = numbers.integer("the number of a node")?;
             }
             for _ in 0..self.extra {
-                numbers.reference("a reference")?;
+                let reference = numbers.reference("a reference")?;
+                out.region(reference as u64, || reference.to_string())?;
             }
             out.element(label, self.kind, &ids)?;
             label += 1;

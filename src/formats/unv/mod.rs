@@ -45,6 +45,10 @@ impl Format for Unv {
         begins && (NodeDataset::find(number).is_some() || is_listed(number) || number[6..].starts_with(b"b"))
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("physical properties")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let mut lines = LineReader::new(&input.source, &input.limits, 0);
         let (mut nodes, mut elements) = (false, false);

@@ -77,14 +77,16 @@ pub(super) struct ElementDataset {
     number: u64,
     /// Which integer of the first line is the number of nodes.
     nodes: usize,
+    /// Which integer is the number of the physical property.
+    property: usize,
     /// Whether beams have a line more, between the first and the nodes.
     beam_line: bool,
 }
 
 static ELEMENT_DATASETS: [ElementDataset; 3] = [
-    ElementDataset { number: 2412, nodes: 5, beam_line: true },
-    ElementDataset { number: 780, nodes: 7, beam_line: true },
-    ElementDataset { number: 71, nodes: 6, beam_line: false },
+    ElementDataset { number: 2412, nodes: 5, property: 2, beam_line: true },
+    ElementDataset { number: 780, nodes: 7, property: 3, beam_line: true },
+    ElementDataset { number: 71, nodes: 6, property: 2, beam_line: false },
 ];
 
 /// The first line of an element.
@@ -155,6 +157,11 @@ impl ElementLayout for ElementRecords {
                 }
             }
             out.at = Spot::Text(line.at);
+            if out.wants_regions() {
+                let at = WIDTH * self.dataset.property;
+                let property = integer(line.bytes, at, WIDTH, "a physical property")?;
+                out.region(property, || property.to_string())?;
+            }
             out.element(head.label, types.find(&head)?, &ids)?;
         }
         Ok(())

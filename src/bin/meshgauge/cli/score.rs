@@ -78,6 +78,14 @@ pub struct Args {
     #[arg(long, value_name = "X,Y,Z", value_parser = stretch)]
     stretch: Option<Stretch>,
 
+    /// Name the N worst elements a measure: number, value, centroid, nodes and region.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    worst: Option<u16>,
+
+    /// Split the statistics by region: physical groups, parts, domains, whatever the format has.
+    #[arg(long, value_name = "region", value_parser = ["region"])]
+    by: Option<String>,
+
     /// The true volume of the domain; the mesh fails if its own is off by more than the tolerance.
     #[arg(long, value_name = "V", conflicts_with = "expect_area", value_parser = positive)]
     expect_volume: Option<f64>,
@@ -154,6 +162,8 @@ impl Args {
         score.measures = self.measures.clone().unwrap_or_else(|| score.measures.clone());
         score.frame = self.frame.unwrap_or(score.frame);
         score.stretch = self.stretch.map_or(score.stretch, |stretch| stretch.0);
+        score.worst = self.worst.map_or(score.worst, usize::from);
+        score.by_region |= self.by.is_some();
         score.allow_missing_nodes |= self.allow_missing_nodes;
         score.run_info &= !self.no_run_info;
         config.verdict.fail_under.extend(self.fail_under.iter().cloned());

@@ -104,8 +104,13 @@ impl Tables {
 
     pub(super) fn read_elements(&mut self, block: &Block<Kind>, set: Option<&[u8]>) -> Result<()> {
         let kind = &block.what;
-        let lines =
-            ElementLines { source: Arc::clone(&block.source), kind: kind.clone(), scope: 0, instances: None };
+        let lines = ElementLines {
+            source: Arc::clone(&block.source),
+            kind: kind.clone(),
+            region: None,
+            scope: 0,
+            instances: None,
+        };
         for span in &block.spans {
             let mut labels = Vec::new();
             lines.each(span.clone(), |label, ids| {
