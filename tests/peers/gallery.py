@@ -340,6 +340,16 @@ def held(mesh, ending):
     return in_digits(turned, 12) if ending == "ascii.vtu" else turned
 
 
+def by_type(mesh):
+    """MED has one section a type, and an HDF5 file lists them by their names."""
+    types = sorted({cell_name(b) for b in mesh.blocks}, key=meshio_to_med_type.get)
+    alike = [[b for b in mesh.blocks if cell_name(b) == name] for name in types]
+    joined = [replace(bs[0], nodes=np.concatenate([b.nodes for b in bs]),
+                      corners=None if bs[0].shape is None else np.concatenate([b.corners for b in bs]),
+                      labels=np.concatenate([b.labels for b in bs])) for bs in alike]
+    return Mesh(mesh.points, joined)
+
+
 def from_meshio(folder, meshes):
     for name in ("pit", "pit-2", "specimen", "specimen-2", "extruded", "extruded-2", "extruded-complete", "transition",
                  "transition-2", "transition-complete", "shell", "flawed", "large"):
@@ -350,6 +360,8 @@ def from_meshio(folder, meshes):
             extension = ending.split(".")[-1]
             written = only(vtk_ordered(meshes[name]), lambda b: cell_name(b) in KNOWN[extension]
                            and cell_name(b) in topological_dimension)
+            if extension == "med":
+                written = by_type(written)
             path = folder / f"meshio-{name}-{ending}".replace("-.", ".")
             meshio.write(path, meshio_mesh(written, entities=ending.startswith("41")), **options)
             yield Case(path, held(written, ending))

@@ -67,7 +67,7 @@ impl<'i> Files<'i> {
             Place::Text => self.text(item, is_coordinates),
             Place::Binary(endian, at) => {
                 let name = self.name(item)?;
-                let file = self.siblings.open(&self.main, Path::new(&name)).map(|sibling| sibling.source);
+                let file = self.open_file(&name);
                 file.and_then(|file| {
                     let (number, count) = (item.number, item.count);
                     let stored = Stored { origin: Origin::File, at, number, endian, count };
@@ -78,6 +78,15 @@ impl<'i> Files<'i> {
             Place::Hdf => self.hdf(item),
         };
         found.map_err(|error| self.input.source.place(error, Spot::Text(item.at)))
+    }
+
+    /// Opens a file that is named. Writers that are told an absolute name put absolute names into their files: one that
+    /// leads into the mesh's own folder is taken for one that starts there.
+    fn open_file(&mut self, name: &str) -> Result<Arc<Source>> {
+        let main = std::path::absolute(self.input.source.path()).ok();
+        let folder = main.as_deref().and_then(Path::parent);
+        let beside = folder.and_then(|folder| Path::new(name).strip_prefix(folder).ok());
+        Ok(self.siblings.open(&self.main, beside.unwrap_or(Path::new(name)))?.source)
     }
 
     fn text(&mut self, item: &Item, is_coordinates: bool) -> Result<Found> {
@@ -123,7 +132,7 @@ impl<'i> Files<'i> {
         let k = match self.open.iter().position(|open| open.0 == file) {
             Some(k) => k,
             None => {
-                let source = self.siblings.open(&self.main, Path::new(file))?.source;
+                let source = self.open_file(file)?;
                 self.open.push((file.to_owned(), Hdf5::of_source(&source)?));
                 self.open.len() - 1
             }

@@ -85,6 +85,22 @@ fn plain_binary_files_are_read_in_either_byte_order() {
 }
 
 #[test]
+fn an_absolute_name_may_lead_into_the_own_folder() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let reals: Vec<u8> = [0f32, 0., 1., 0., 0., 1.].into_iter().flat_map(f32::to_le_bytes).collect();
+    let cells =
+        "<Topology TopologyType=\"Triangle\"><DataItem Dimensions=\"1 3\">0 1 2</DataItem></Topology>";
+    for (name, is_read) in [(folder.path().join("p.bin"), true), ("/etc/hostname".into(), false)] {
+        let points = "<DataItem Dimensions=\"3 2\" Format=\"Binary\" Endian=\"Little\">";
+        let text = file(&grid(&format!("{points}{}</DataItem>", name.display()), cells));
+        std::fs::write(folder.path().join("p.bin"), &reals).expect("a file");
+        std::fs::write(folder.path().join("a.xdmf"), text).expect("a file");
+        let found = crate::formats::reading::read(&Xdmf, &folder.path().join("a.xdmf"));
+        assert_eq!(found.is_ok(), is_read, "{}", name.display());
+    }
+}
+
+#[test]
 fn what_is_wrong_or_not_read_is_named() {
     let rows = [
         (grid(POINTS, ""), "line 4: expected a grid with a Topology, found none"),
