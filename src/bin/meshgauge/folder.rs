@@ -144,9 +144,21 @@ impl Walk {
 
     /// What stands under the name of a file now; `None` if nothing does.
     pub fn look(&self, path: &Path) -> Option<Found> {
+        if !self.is_reached_without_links(path) {
+            return None;
+        }
         let data = fs::symlink_metadata(self.root.join(path)).ok()?;
         let mesh = data.is_dir().then(|| self.mesh_of_folder(path)).flatten();
         Some(mesh.map_or_else(|| self.found(path, &data), |(found, _)| found))
+    }
+
+    /// Whether the folders on the way to a file are folders still: a scan does not follow links to folders, and one
+    /// that took the place of a folder since the last scan must not lead us out.
+    fn is_reached_without_links(&self, path: &Path) -> bool {
+        let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return true };
+        let here = |path: &Path| fs::canonicalize(path);
+        here(&self.root)
+            .is_ok_and(|root| here(&self.root.join(folder)).is_ok_and(|way| way == root.join(folder)))
     }
 
     /// What the mesh is that a folder holds, and its files, if the folder is one mesh.
@@ -259,6 +271,21 @@ mod tests {
         for (pattern, name, expected) in cases {
             assert_eq!(matches(pattern.as_bytes(), name.as_bytes()), expected, "{pattern} {name}");
         }
+    }
+
+    #[test]
+    fn a_folder_that_became_a_link_is_not_followed() {
+        let (folder, outside) =
+            (tempfile::tempdir().expect("a folder"), tempfile::tempdir().expect("another"));
+        fs::create_dir(folder.path().join("sub")).expect("a folder");
+        for place in [folder.path().join("sub"), outside.path().to_owned()] {
+            fs::write(place.join("a.msh"), "x").expect("written");
+        }
+        let walk = Walk::new(folder.path(), &Watch::default());
+        assert!(walk.look(Path::new("sub/a.msh")).is_some());
+        fs::remove_dir_all(folder.path().join("sub")).expect("removed");
+        std::os::unix::fs::symlink(outside.path(), folder.path().join("sub")).expect("linked");
+        assert_eq!(walk.look(Path::new("sub/a.msh")), None);
     }
 
     #[test]
