@@ -23,6 +23,8 @@ pub struct Table<'a> {
 /// A row: one measure on one mesh.
 #[derive(Debug)]
 pub struct Row<'a> {
+    /// The mesh's place among the summaries.
+    pub index: usize,
     /// The mesh's name, as it stands in the summary.
     pub mesh: &'a str,
     /// The measure's code, as it stands in the summary.
@@ -64,12 +66,12 @@ pub fn plural(shape: Shape) -> &'static str {
 /// The tables of some meshes: by shape, and boundaries after the rest.
 pub fn tables(summaries: &[Summary]) -> Vec<Table<'_>> {
     let mut tables: Vec<Table> = Vec::new();
-    for summary in summaries {
+    for (index, summary) in summaries.iter().enumerate() {
         let dimension = summary.dimension();
         for (&shape, measured) in &summary.shapes {
             let boundary = shape.dimension() < dimension;
             for (code, found) in &measured.measures {
-                let row = Row { mesh: &summary.mesh.name, code, found };
+                let row = Row { index, mesh: &summary.mesh.name, code, found };
                 let on = found.on.as_ref();
                 match tables.iter_mut().find(|t| (t.boundary, t.shape, t.on) == (boundary, shape, on)) {
                     Some(table) => table.rows.push(row),

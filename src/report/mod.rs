@@ -5,11 +5,13 @@
 mod comparison;
 mod csv;
 mod details;
+pub mod figure;
 mod head;
 mod json;
 mod layout;
 mod markdown;
 mod numbers;
+pub mod page;
 mod reasons;
 mod safe;
 mod table;

@@ -86,7 +86,7 @@ fn score(problem: &Problem, shape: Shape, aspect: fn(&[Point; 4]) -> f64) -> Vec
 
 /// Compares with the rows of one table; gives the number of rows that there were.
 fn assert_published(table: &str, mesh: &str, columns: &[(String, Column)]) -> usize {
-    let file = fs::read_to_string("tests/golden/npl_tables.csv").unwrap();
+    let file = fs::read_to_string("src/report/page/npl_tables.csv").unwrap();
     let rows = file.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let mut count = 0;
     for row in rows.filter(|row| row[0] == table && row[1] == mesh) {

@@ -12,6 +12,7 @@ use crate::compare::Comparisons;
 
 pub use markdown::render as markdown;
 pub use table::render as table;
+pub(super) use words::{COLUMNS, cells, rest, side, told};
 
 /// One indented object.
 pub fn json(comparisons: &Comparisons, _: &Style, out: &mut dyn Write) -> io::Result<()> {

@@ -8,6 +8,7 @@ mod generate;
 mod man;
 mod measures;
 mod output;
+mod report;
 mod score;
 mod status;
 mod watch;
@@ -50,6 +51,7 @@ enum Command {
     Watch(watch::Args),
     Status(status::Args),
     Compare(compare::Args),
+    Report(report::Args),
     Generate(generate::Args),
     Formats(formats::Args),
     Measures(measures::Args),
@@ -93,6 +95,11 @@ pub fn run(cli: Cli) -> anyhow::Result<Status> {
             let config = args.config()?;
             start(&config);
             compare::run(&args, &config)
+        }
+        Command::Report(args) => {
+            let config = args.config()?;
+            start(&config);
+            report::run(&args, &config)
         }
         Command::Worker(args) => {
             start(&Config::default());
