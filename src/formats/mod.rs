@@ -16,6 +16,7 @@ pub mod columns;
 mod comsol;
 pub mod degenerate;
 mod exodus;
+mod facts;
 mod femgv;
 mod foreign;
 mod gmsh;
@@ -57,6 +58,7 @@ use crate::input::{Input, Limits, Scratch, Source};
 use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
+pub use facts::{Facts, SWEEPS, facts};
 pub use foreign::foreign;
 pub use plan::Plan;
 pub use sink::{BLOCK, Chunks, ElementSink, Ledger, TypeCount};

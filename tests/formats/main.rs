@@ -4,6 +4,7 @@
 #![expect(clippy::disallowed_methods, reason = "small meshes of known size are read whole, to be rewritten")]
 
 mod corpus;
+mod document;
 mod mixed;
 
 use std::collections::BTreeSet;

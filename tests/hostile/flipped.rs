@@ -9,7 +9,7 @@ use crate::packing::pack;
 use crate::{Random, own_meshes, places};
 
 /// Sound numbers and short bounds, whatever was changed.
-fn assert_sound(result: meshgauge::Result<meshgauge::Summary>, what: &str) {
+pub fn assert_sound(result: meshgauge::Result<meshgauge::Summary>, what: &str) {
     match result {
         Err(error) => assert_tells_all(&error, what),
         Ok(summary) => {

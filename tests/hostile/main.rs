@@ -9,6 +9,7 @@
 mod attempt;
 #[path = "../input/bombs.rs"]
 mod bombs;
+mod corpus;
 mod cut;
 mod flipped;
 mod heap;

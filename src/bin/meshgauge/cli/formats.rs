@@ -2,7 +2,7 @@
 
 use std::io::{Write, stdout};
 
-use meshgauge::formats::FORMATS;
+use meshgauge::formats::{FORMATS, facts};
 
 use crate::exit::Status;
 
@@ -17,6 +17,11 @@ pub fn run(_args: &Args) -> anyhow::Result<Status> {
         writeln!(out, "{:<12} {}", format.name(), format.title())?;
         writeln!(out, "{:<12} extensions: {}", "", extensions.join(" "))?;
         writeln!(out, "{:<12} recognised by: {}", "", format.looks_for())?;
+        let facts =
+            facts(format.name()).map(|facts| [("handled", facts.quirks), ("refused by name", facts.refused)]);
+        for (title, rows) in facts.into_iter().flatten() {
+            rows.iter().try_for_each(|row| writeln!(out, "{:<12} {title}: {row}", ""))?;
+        }
     }
     Ok(Status::Fine)
 }

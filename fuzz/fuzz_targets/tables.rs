@@ -1,0 +1,6 @@
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use meshgauge_fuzz::{TABLES, score_one_of};
+
+fuzz_target!(|data: &[u8]| score_one_of(TABLES, data));
