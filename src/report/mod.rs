@@ -6,6 +6,7 @@ mod comparison;
 mod csv;
 mod details;
 pub mod figure;
+mod grid;
 mod head;
 mod json;
 mod layout;
@@ -20,6 +21,8 @@ use std::io::{self, Write};
 
 use crate::compare::Comparisons;
 use crate::summary::Summary;
+
+pub use grid::Grid;
 
 /// One way of writing summaries, or what they are compared to.
 #[derive(Debug)]

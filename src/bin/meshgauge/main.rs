@@ -19,6 +19,7 @@ mod rules;
 mod selection;
 mod state;
 mod status;
+mod suite;
 mod summaries;
 
 use std::process::ExitCode;

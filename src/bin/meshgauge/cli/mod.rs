@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod bench_generators;
 mod compare;
 mod completions;
 mod config;
@@ -53,6 +54,7 @@ enum Command {
     Compare(compare::Args),
     Report(report::Args),
     Generate(generate::Args),
+    BenchGenerators(bench_generators::Args),
     Formats(formats::Args),
     Measures(measures::Args),
     Config(config::Args),
@@ -106,6 +108,11 @@ pub fn run(cli: Cli) -> anyhow::Result<Status> {
             worker::run(&args)
         }
         Command::Generate(args) => generate::run(&args),
+        Command::BenchGenerators(args) => {
+            let config = args.config()?;
+            start(&config);
+            bench_generators::run(&args, &config)
+        }
         Command::Formats(args) => formats::run(&args),
         Command::Measures(args) => measures::run(&args),
         Command::Config(args) => config::run(&args),
