@@ -40,7 +40,7 @@ def cell(least, mean, deviation, element):
 
 def runs(rows):
     print("\n### How the generators ran\n")
-    print(head(["problem, mesh", "version", "nodes", "elements", "size error", "seconds", "memory", "outcome"]))
+    print(head(["problem, mesh", "version", "nodes", "elements", "size error", "CPU seconds", "memory", "outcome"]))
     for r in rows:
         found = r["nodes"] is not None
         print(row([
@@ -49,7 +49,7 @@ def runs(rows):
             r["nodes"] or "",
             r["elements"] or "",
             f"{100 * r['relative_error']:.3f} %" if found else "",
-            f"{r['seconds']:.1f}" if r["seconds"] else "",
+            f"{r['cpu_seconds']:.1f}" if r["cpu_seconds"] else "",
             f"{r['peak_rss_bytes'] / 1e6:.0f} MB" if r["peak_rss_bytes"] else "",
             r["outcome"] if found and r["outcome"] == "fine" else (r["reason"] or r["outcome"]).replace("|", "/")[:90],
         ]))
