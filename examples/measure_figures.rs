@@ -48,10 +48,10 @@ fn main() -> io::Result<()> {
 fn framed(title: &str, most: f64, labels: (&str, &str), body: &str) -> String {
     let all = SIDE + 2.0 * MARGIN;
     let mut svg = format!(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {all} {all}" font-family="sans-serif" font-size="12">
+        r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {all} {all}" font-family="sans-serif" font-size="12">
 <title>{title}</title><rect width="{all}" height="{all}" fill="#fff"/>
 <text x="{MARGIN}" y="30" font-size="14">{title}</text>
-"#
+"##
     );
     for k in 0..=6 {
         let (at, value) = (MARGIN + SIDE * f64::from(k) / 6.0, most * f64::from(k) / 6.0);

@@ -87,7 +87,7 @@ exec "$1" generate mapped-disc divisions=$divisions -q -o "$3"
 "#;
 
 fn bench(folder: &Path, more: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("meshgauge").unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_meshgauge"));
     let (suite, results) = (folder.join("suite.toml"), folder.join("results"));
     command.arg("bench-generators").arg(suite).arg("--results").arg(results).args(more);
     command
