@@ -45,6 +45,12 @@ pub static SWEEPS: &[(&str, u32, u32, &str)] = &[
     ("Triangle's examples (PyPI triangle)", 40, 20, "20 `.poly` boundaries, yet to be meshed"),
     ("Gmsh's tutorials (Debian gmsh-doc), but for geometry", 9, 9, ""),
     ("polyMesh folders of OpenFOAM 1912's tutorials (Debian openfoam-examples)", 6, 6, ""),
+    (
+        "15 of those tutorials, spread over all, by blockMesh: classes of cells and volumes are those of checkMesh",
+        15,
+        15,
+        "",
+    ),
 ];
 
 static FACTS: &[Facts] = &[

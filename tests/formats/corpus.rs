@@ -45,6 +45,8 @@ const COUNTED_OTHERWISE: &[(&str, u64, u64)] = &[
     ("comsol/synthetic_busbar.mphbin", 232, 1377),
     // The original's boundary elements are in the packed file too.
     ("compressed/mesh_1.mphtxt.zst", 1204, 6774),
+    // Told as points, faces and cells.
+    ("openfoam/couette/polyMesh/faces", 410, 160),
     // Gmsh leaves lines and points out of its decks.
     ("lsdyna/gmsh_mixed.key", 54, 100),
     // Nine groups, of which seven are of edges.
