@@ -36,6 +36,9 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("lsdyna", after_first_card, "a deck may lack *END: it may well end with any card"),
     ("frd", after_elements, "results come after the mesh"),
     ("femgv", after_elements, "results come after the mesh"),
+    ("abaqus", after_all_elements, "materials, sets and steps come after the mesh"),
+    ("lsdyna", after_all_elements, "sets and materials come after the mesh"),
+    ("netgen", |kept, _| contains(kept, b"endmesh"), "the geometry comes after the mesh"),
 ];
 
 /// Whether nobody can tell that a file was cut here.
@@ -69,6 +72,21 @@ fn within_last_number(_: &[u8], lost: &[u8]) -> bool {
 fn in_elements_at_end_of_line(kept: &[u8], lost: &[u8]) -> bool {
     let elements = memchr::memmem::find(kept, b"*ELEMENT").is_some_and(|at| kept[at..].contains(&b'\n'));
     elements && (kept.ends_with(b"\n") || lost.starts_with(b"\n") || lost.starts_with(b"\r"))
+}
+
+/// The keyword that the cut is in is no mesh, and none that is lost is.
+fn after_all_elements(kept: &[u8], lost: &[u8]) -> bool {
+    let names = |text: &[u8]| -> Vec<String> {
+        let lines = text.split(|b| *b == b'\n').map(<[u8]>::trim_ascii_start);
+        let keywords = lines.filter(|line| line.starts_with(b"*") && !line.starts_with(b"**"));
+        let name =
+            |line: &[u8]| line.split(|b| matches!(b, b',' | b'\r')).next().unwrap_or_default().to_vec();
+        keywords.map(|line| String::from_utf8_lossy(&name(line)).trim_end().to_uppercase()).collect()
+    };
+    let makes =
+        |name: &String| name.starts_with("*ELEMENT") || name == "*NODE" || name.starts_with("*INCLUDE");
+    let (kept, lost) = (names(kept), names(lost));
+    kept.iter().any(makes) && !kept.last().is_some_and(makes) && !lost.iter().any(makes)
 }
 
 /// A table of elements or End would follow.
