@@ -140,7 +140,7 @@ impl Trial<'_> {
         }
         let summary = match self.score(&draft) {
             Ok(summary) => summary,
-            Err(error) => return Ok(self.without(row, Outcome::Unreadable, error.to_string())),
+            Err(error) => return Ok(self.without(row, Outcome::Unreadable, shortened(&error.to_string()))),
         };
         if summary.dimension() != Suite::dimension(self.problem) as usize {
             let reason = format!("the mesh has {} dimensions", summary.dimension());
@@ -274,5 +274,14 @@ impl Trial<'_> {
         let place = self.file(".run.json");
         let text = serde_json::to_string_pretty(row)?;
         publish(&place, &(text + "\n")).with_context(|| place.display().to_string())
+    }
+}
+
+/// The start of an error: where no format knows a file, the rest lists them all.
+fn shortened(error: &str) -> String {
+    const LENGTH: usize = 160;
+    match error.char_indices().nth(LENGTH) {
+        Some((end, _)) => format!("{}…", &error[..end]),
+        None => error.to_owned(),
     }
 }
