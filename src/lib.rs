@@ -15,7 +15,7 @@
 //! Bytes go one way, through layers of which each uses only those below it:
 //!
 //! ```text
-//! pipeline    report      generate      the only threads and channels; text; model problems
+//! pipeline  report  export  generate    the only threads and channels; text and files; model problems
 //! compare                               two summaries beside each other
 //! formats     measures    statistics    bytes to elements; coordinates to scores; scores to moments and bins
 //! summary     mesh        input         the schema; shapes, chunks, the node table; mapped and unpacked files
@@ -27,6 +27,7 @@
 
 pub mod compare;
 pub mod error;
+pub mod export;
 pub mod formats;
 pub mod generate;
 pub mod input;
@@ -38,5 +39,5 @@ pub mod statistics;
 pub mod summary;
 
 pub use error::{Error, Result};
-pub use pipeline::{Options, Progress, score, score_reader};
+pub use pipeline::{Options, Progress, score, score_each, score_reader, score_reader_each};
 pub use summary::Summary;

@@ -16,6 +16,7 @@ const LAYERS: &[(&str, &[&str])] = &[
     ("compare", &["mesh", "measures", "statistics", "summary"]),
     ("pipeline", &["error", "input", "mesh", "formats", "measures", "statistics", "summary"]),
     ("report", &["mesh", "measures", "summary", "compare"]),
+    ("export", &["error", "input", "mesh", "measures"]),
     ("generate", &["error", "mesh"]),
 ];
 

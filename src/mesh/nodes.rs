@@ -400,19 +400,27 @@ impl Nodes {
 
     fn bounds_of_live_rows(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        let mut include = |row: usize| bounds.include(&self.rows()[row]);
+        let included = self.try_each_row(|row| {
+            bounds.include(&self.rows()[row]);
+            Ok(())
+        });
+        debug_assert!(included.is_ok());
+        bounds
+    }
+
+    /// Calls `include` with every row that no later definition of its node replaced.
+    pub fn try_each_row(&self, mut include: impl FnMut(usize) -> Result<()>) -> Result<()> {
         match &self.index {
             Index::Table { rows, .. } => {
-                rows.rows().iter().filter(|&&row| row > 0).for_each(|&row| include(row as usize - 1));
+                rows.rows().iter().filter(|&&row| row > 0).try_for_each(|&row| include(row as usize - 1))
             }
             Index::Pairs(pairs) => {
                 let pairs = pairs.rows();
                 let last = |i: usize| i + 1 == pairs.len() || pairs[i][0] != pairs[i + 1][0];
-                (0..pairs.len()).filter(|&i| last(i)).for_each(|i| include(pairs[i][1] as usize));
+                (0..pairs.len()).filter(|&i| last(i)).try_for_each(|i| include(pairs[i][1] as usize))
             }
-            Index::Dense { .. } | Index::Runs(_) => (0..self.rows().len()).for_each(include),
+            Index::Dense { .. } | Index::Runs(_) => (0..self.rows().len()).try_for_each(include),
         }
-        bounds
     }
 }
 

@@ -5,6 +5,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
 
+/// Longer names are cut: they come from files.
+const LONGEST_NAME: usize = 256;
+
 /// The region of elements that are in none.
 pub const NO_REGION: u32 = 0;
 
@@ -29,7 +32,10 @@ impl Regions {
     }
 
     /// The number of the region with this name.
-    pub fn number(&self, name: String) -> Result<u32> {
+    pub fn number(&self, mut name: String) -> Result<u32> {
+        if let Some((end, _)) = name.char_indices().nth(LONGEST_NAME) {
+            name.truncate(end);
+        }
         let mut known = self.known();
         if let Some(number) = known.numbers.get(&name) {
             return Ok(*number);
@@ -67,6 +73,9 @@ mod tests {
             (Some(1), Some(2), Some(1))
         );
         assert!(number("air").is_err_and(|e| e.to_string().contains("regions")));
+        let long = Regions::new(1);
+        assert_eq!(long.number("é".repeat(1000)).ok(), Some(1));
+        assert_eq!(long.name(1).map(|name| name.chars().count()), Some(LONGEST_NAME));
         assert_eq!((regions.name(2).as_deref(), regions.name(NO_REGION)), (Some("pit"), None));
     }
 }

@@ -262,6 +262,8 @@ fn checks(found: &Found<'_>, reversed: &Reversed) -> Checks {
         missing_nodes: ledger.missing_nodes,
         repeated_nodes: ledger.repeated_nodes,
         unused_nodes: found.nodes.unused(),
+        duplicate_elements: found.merged.duplicate_elements,
+        coincident_nodes: found.merged.coincident_nodes,
         ..Checks::default()
     };
     for (statistics, reversed) in found.merged.shapes.iter().zip(reversed) {

@@ -9,6 +9,7 @@ use std::thread;
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, select};
 
+use super::duplicates::{self, Fingerprints};
 use super::each::Each;
 use super::listing::Listing;
 use super::measure::{Bins, Workspace, measure};
@@ -52,12 +53,13 @@ pub(super) fn chunks_in_flight(threads: usize) -> usize {
 pub(super) fn measure_elements(
     pieces: &[Piece<dyn ElementLayout>],
     nodes: &Nodes,
-    threads: usize,
     options: &Options,
     listing: Option<Listing<'_>>,
+    fingerprints: Option<&mut Fingerprints>,
     regions: &Regions,
     progress: &Progress,
 ) -> Result<(Merged, Bins)> {
+    let threads = options.threads.max(1);
     let window = 4 * threads + 2;
     let (ticket_out, tickets) = bounded(window);
     let (full_out, full_in) = bounded(threads - 1);
@@ -82,7 +84,7 @@ pub(super) fn measure_elements(
             })
             .collect();
         drop(ends);
-        let merged = merge(&results_in, ticket_out, listing);
+        let merged = merge(&results_in, ticket_out, listing, fingerprints);
         let mut bins = Bins::new(nodes.bounds().diagonal(), options);
         for worker in workers {
             match worker.join() {
@@ -126,7 +128,7 @@ impl<'a> Worker<'a> {
         let Ends { full_in, full_out, empty_out, results, .. } = ends;
         drop(full_out);
         for chunk in full_in {
-            measure_and_send(&chunk, shared.nodes, &mut work, &mut bins, &results);
+            measure_and_send(&chunk, shared, &mut work, &mut bins, &results);
             let _ = empty_out.send(chunk);
         }
         bins
@@ -152,7 +154,7 @@ impl<'a> Worker<'a> {
     }
 
     fn measure(&mut self, chunk: Chunk) {
-        measure_and_send(&chunk, self.shared.nodes, &mut self.work, &mut self.bins, &self.ends.results);
+        measure_and_send(&chunk, self.shared, &mut self.work, &mut self.bins, &self.ends.results);
         let _ = self.ends.empty_out.send(chunk);
     }
 }
@@ -173,15 +175,16 @@ impl Chunks for Worker<'_> {
 
 fn measure_and_send(
     chunk: &Chunk,
-    nodes: &Nodes,
+    shared: &Shared<'_>,
     work: &mut Workspace,
     bins: &mut Bins,
     results: &Sender<Message>,
 ) {
-    let (found, rows) = measure(chunk, nodes, work, bins);
+    let (found, rows) = measure(chunk, shared.nodes, work, bins);
+    let prints = if shared.options.all_checks { duplicates::of_elements(chunk) } else { Vec::new() };
     let (origin, shape, found) = (chunk.origin(), chunk.shape(), Box::new(found));
     // A closed channel means that the merge stage has an error to report, which is the answer then.
-    let _ = results.send(Message::Chunk { origin, shape, found, rows });
+    let _ = results.send(Message::Chunk { origin, shape, found, rows, prints });
 }
 
 /// Tells the merge stage that a worker has ended, however it did.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crossbeam_channel::{Receiver, Sender};
 
+use super::duplicates::Fingerprints;
 use super::each::Rows;
 use super::listing::Listing;
 use super::measure::ShapeStatistics;
@@ -18,7 +19,13 @@ type Done = Result<(Ledger, u32)>;
 /// What workers tell the merge stage.
 pub(super) enum Message {
     /// A chunk is measured.
-    Chunk { origin: Origin, shape: Shape, found: Box<ShapeStatistics>, rows: Option<Box<Rows>> },
+    Chunk {
+        origin: Origin,
+        shape: Shape,
+        found: Box<ShapeStatistics>,
+        rows: Option<Box<Rows>>,
+        prints: Vec<u128>,
+    },
     /// A piece is decoded, into so many chunks; or it failed.
     Piece { number: u64, done: Done },
     /// A worker has panicked; its thread will say how.
@@ -33,6 +40,9 @@ pub(super) type ByShape = [Option<Box<ShapeStatistics>>; Shape::ALL.len()];
 pub(super) struct Merged {
     pub shapes: ByShape,
     pub ledger: Ledger,
+    /// What the costly checks found, where they were made.
+    pub duplicate_elements: Option<u64>,
+    pub coincident_nodes: Option<u64>,
 }
 
 /// A piece of which not everything has come in.
@@ -51,11 +61,13 @@ impl Pending {
 }
 
 /// Merges until all workers have ended. Of several errors the first in the file counts: pieces are taken in order, so
-/// whoever fails, all pieces before it are still brought to their end. Single elements go to `listing`, if there is one.
+/// whoever fails, all pieces before it are still brought to their end. Single elements go to `listing`, and their
+/// fingerprints to `fingerprints`, if there are such.
 pub(super) fn merge(
     results: &Receiver<Message>,
     tickets: Sender<()>,
     mut listing: Option<Listing<'_>>,
+    mut fingerprints: Option<&mut Fingerprints>,
 ) -> Result<Merged> {
     let mut tickets = Some(tickets);
     let mut pending: BTreeMap<u64, Pending> = BTreeMap::new();
@@ -65,7 +77,13 @@ pub(super) fn merge(
     let mut next = 0;
     for message in results {
         match message {
-            Message::Chunk { origin, shape, found, rows } => {
+            Message::Chunk { origin, shape, found, rows, prints } => {
+                if let Some(all) = &mut fingerprints
+                    && let Err(error) = prints.into_iter().try_for_each(|print| all.add(print))
+                {
+                    (tickets, fingerprints) = (None, None);
+                    failed.get_or_insert((origin.piece, error));
+                }
                 let piece = pending.entry(origin.piece).or_default();
                 piece.chunks.insert(origin.chunk, (shape, found));
                 piece.rows.extend(rows.map(|rows| (shape, rows)));
@@ -99,7 +117,7 @@ pub(super) fn merge(
     }
     match failed {
         Some((_, error)) => Err(error),
-        None => Ok(Merged { shapes: tree.finish().unwrap_or_default(), ledger }),
+        None => Ok(Merged { shapes: tree.finish().unwrap_or_default(), ledger, ..Merged::default() }),
     }
 }
 

@@ -4,6 +4,7 @@
 //! chunks into statistics, statistics into a summary. What is merged with what depends on positions in the file alone.
 
 mod assemble;
+mod duplicates;
 mod each;
 mod elements;
 mod listing;
@@ -43,8 +44,18 @@ pub fn score_each(path: &Path, options: &Options, writer: Option<&mut dyn Elemen
 
 /// Scores a mesh that comes from a stream, such as standard input; it is spooled to scratch first.
 pub fn score_reader(name: &str, reader: impl Read, options: &Options) -> Result<Summary> {
+    score_reader_each(name, reader, options, None)
+}
+
+/// Scores a mesh that comes from a stream, and hands every measured element to `writer`.
+pub fn score_reader_each(
+    name: &str,
+    reader: impl Read,
+    options: &Options,
+    writer: Option<&mut dyn ElementWriter>,
+) -> Result<Summary> {
     let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
     let mut input = Input::from_reader(Path::new(name), reader, &options.limits, &scratch)?;
     input.memory = run::budget(options);
-    run::run(&input, options, None)
+    run::run(&input, options, writer)
 }

@@ -37,6 +37,8 @@ pub struct Options {
     pub by_region: bool,
     /// Most regions that there are statistics of.
     pub most_regions: usize,
+    /// Whether the costly checks are made too: duplicate elements, coincident nodes.
+    pub all_checks: bool,
     /// Whether the summary tells of the run.
     pub run_info: bool,
     /// Where the run notes how far it is.
@@ -59,6 +61,7 @@ impl Default for Options {
             worst: 0,
             by_region: false,
             most_regions: 1000,
+            all_checks: false,
             run_info: true,
             progress: None,
         }
@@ -68,12 +71,18 @@ impl Default for Options {
 /// How far a run is. Readers may look at any time.
 #[derive(Debug, Default)]
 pub struct Progress {
+    bytes: AtomicU64,
     pieces: AtomicU64,
     pieces_done: AtomicU64,
     elements: AtomicU64,
 }
 
 impl Progress {
+    /// Notes how many bytes the mesh has, unpacked.
+    pub(crate) fn of_bytes(&self, bytes: u64) {
+        self.bytes.store(bytes, Ordering::Relaxed);
+    }
+
     /// Notes that `count` more pieces are known.
     pub(crate) fn expect(&self, count: u64) {
         self.pieces.fetch_add(count, Ordering::Relaxed);
@@ -93,6 +102,18 @@ impl Progress {
     /// Number of pieces that are done.
     pub fn pieces_done(&self) -> u64 {
         self.pieces_done.load(Ordering::Relaxed)
+    }
+
+    /// Number of bytes of the mesh, unpacked.
+    pub fn bytes(&self) -> u64 {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    /// Number of those bytes that are done, by the share of pieces; 0 until the pieces are known.
+    pub fn bytes_done(&self) -> u64 {
+        let (pieces, done) = (self.pieces(), self.pieces_done());
+        let share = done.min(pieces) as f64 / pieces.max(1) as f64;
+        (share * self.bytes() as f64) as u64
     }
 
     /// Number of elements that are measured.

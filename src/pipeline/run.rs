@@ -5,6 +5,7 @@ use std::thread;
 use std::time::{Instant, SystemTime};
 
 use super::assemble::{Found, assemble};
+use super::duplicates::{Fingerprints, coincident_nodes};
 use super::elements::{chunks_in_flight, measure_elements};
 use super::listing::Listing;
 use super::nodes::read_nodes;
@@ -71,6 +72,7 @@ fn measure(
     threads: usize,
     progress: &Progress,
 ) -> Result<(crate::mesh::Nodes, super::merge::Merged, super::measure::Bins)> {
+    progress.of_bytes(input.source.len());
     let mut plan = Plan::default();
     format.outline(input, &mut plan)?;
     progress.expect((plan.nodes.len() + plan.elements.len()) as u64);
@@ -84,8 +86,15 @@ fn measure(
     let nodes = read_nodes(&plan.nodes, threads, builder, progress)?;
     tracing::debug!(nodes = nodes.count(), spilled = nodes.is_spilled(), "nodes read");
     let listing = writer.as_deref_mut().map(|writer| Listing::new(writer, regions));
+    let bytes = input.source.len();
+    let mut prints = options.all_checks.then(|| Fingerprints::new(bytes, &input.scratch)).transpose()?;
+    let prints_in = prints.as_mut();
     let (mut merged, bins) =
-        measure_elements(&plan.elements, &nodes, threads, options, listing, regions, progress)?;
+        measure_elements(&plan.elements, &nodes, options, listing, prints_in, regions, progress)?;
+    if let Some(prints) = prints {
+        merged.duplicate_elements = Some(prints.repeated()?);
+        merged.coincident_nodes = Some(coincident_nodes(&nodes, bytes, &input.scratch)?);
+    }
     if let Some(writer) = writer {
         writer.finish(&nodes)?;
     }

@@ -127,6 +127,8 @@ fn findings(checks: &Checks) -> String {
         ),
         (checks.concave_faces, "concave face", "concave faces"),
         (checks.crossed_faces, "crossed face", "crossed faces"),
+        (checks.duplicate_elements.unwrap_or(0), "duplicate element", "duplicate elements"),
+        (checks.coincident_nodes.unwrap_or(0), "coincident node", "coincident nodes"),
     ];
     let found = rows.into_iter().filter(|(number, ..)| *number > 0);
     found.map(|(number, one, many)| counted(number, one, many)).collect::<Vec<_>>().join(", ")

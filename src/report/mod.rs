@@ -13,6 +13,7 @@ mod layout;
 mod markdown;
 mod numbers;
 pub mod page;
+mod plot;
 mod reasons;
 mod safe;
 mod table;
@@ -42,6 +43,8 @@ pub struct Style {
     pub color: bool,
     /// Columns of the terminal; without it lines are as long as they need to be.
     pub width: Option<u16>,
+    /// Whether the terminal's report draws the histograms too.
+    pub plot: bool,
 }
 
 /// Every report; the first is for people.

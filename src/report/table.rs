@@ -8,8 +8,8 @@ use super::details::{self, TextTable};
 use super::layout::{self, Row};
 use super::numbers::{score, spread};
 use super::safe::escaped;
-use super::{Style, head};
-use crate::summary::{Status, Summary};
+use super::{Style, head, plot};
+use crate::summary::{GOOD, INVESTIGATE, Status, Summary};
 
 /// Columns that a table takes besides the mesh's name, with element numbers of up to nine digits.
 const BESIDES_MESH: u16 = 60;
@@ -27,8 +27,11 @@ pub fn render(summaries: &[Summary], style: &Style, out: &mut dyn Write) -> io::
     }
     for table in layout::tables(summaries) {
         writeln!(out, "{}", bold(&escaped(&table.title()), style))?;
-        write_lines(&measures(&table, style), out)?;
+        write_measures(&table, style, out)?;
         writeln!(out)?;
+    }
+    if style.plot {
+        plot::render(summaries, style, out)?;
     }
     for table in details::tables(summaries) {
         writeln!(out, "{}", bold(&table.title, style))?;
@@ -69,6 +72,23 @@ fn detailed(found: &TextTable, style: &Style) -> comfy_table::Table {
         }
     }
     table
+}
+
+/// The rows under what the report's limits make worth a look, or good, in colour.
+fn write_measures(found: &layout::Table, style: &Style, out: &mut dyn Write) -> io::Result<()> {
+    let table = measures(found, style);
+    let lines: Vec<_> = table.lines().collect();
+    let header = lines.len().saturating_sub(found.rows.len());
+    for (i, line) in lines.iter().enumerate() {
+        let least = i.checked_sub(header).map(|row| found.rows[row].found.min);
+        let line = line.trim_end();
+        match least {
+            Some(least) if least < INVESTIGATE => writeln!(out, "{}", ansi("33", line, style))?,
+            Some(least) if least > GOOD => writeln!(out, "{}", ansi("32", line, style))?,
+            _ => writeln!(out, "{line}")?,
+        }
+    }
+    Ok(())
 }
 
 fn measures(found: &layout::Table, style: &Style) -> comfy_table::Table {

@@ -102,7 +102,7 @@ fn tables_keep_to_the_width() {
         "specimen-with-a-hemispherical-pit-of-500-microns-in-a-bar-of-32-millimetres-fine".to_owned();
     long.elements.by_type = (1..40).map(|i| (format!("C3D{i}"), 1000)).collect();
     for width in [80, 120] {
-        let found = render("table", &[long.clone()], Style { color: false, width: Some(width) });
+        let found = render("table", &[long.clone()], Style { color: false, width: Some(width), plot: false });
         // the first line holds the whole name
         for line in found.lines().skip(1) {
             assert!(line.chars().count() <= width.into(), "{width}: {line}");
@@ -113,11 +113,29 @@ fn tables_keep_to_the_width() {
 
 #[test]
 fn only_the_style_colours() {
-    let colored = render("table", &[tetrahedra()], Style { color: true, width: None });
+    let colored = render("table", &[tetrahedra()], Style { color: true, width: None, plot: false });
     assert!(colored.contains("\u{1b}[33mwarn\u{1b}[0m"), "{colored}");
     let codes = ["\u{1b}[1m", "\u{1b}[33m", "\u{1b}[0m"];
     let bare = codes.iter().fold(colored, |text, code| text.replace(code, ""));
     assert_eq!(bare, plain("table", &[tetrahedra()]));
+}
+
+#[test]
+fn histograms_are_drawn_in_the_width_of_the_terminal() {
+    for (width, columns) in [(60, 50), (80, 50), (120, 100), (230, 200)] {
+        let style = Style { color: false, width: Some(width), plot: true };
+        let found = render("table", &[tetrahedra()], style);
+        assert!(found.contains("M33 of 82,916 tetrahedra  pit-1\n"), "{found}");
+        assert_eq!(
+            found.lines().filter(|line| line.trim_start() == format!("0 └{}", "─".repeat(columns))).count(),
+            5
+        );
+        assert!(
+            found.lines().filter(|line| line.contains(['│', '└'])).all(|l| l.chars().count() <= width.into())
+        );
+        assert!(found.contains('█'), "{found}");
+    }
+    assert!(!plain("table", &[tetrahedra()]).contains('└'));
 }
 
 #[test]
@@ -128,7 +146,7 @@ fn look() {
         "specimen-with-a-hemispherical-pit-of-500-microns-in-a-bar-of-32-millimetres-fine".to_owned();
     long.elements.by_type = (1..20).map(|i| (format!("C3D{i}"), 1000)).collect();
     for width in [80, 120] {
-        let style = Style { color: true, width: Some(width) };
+        let style = Style { color: true, width: Some(width), plot: true };
         println!("{}\n{}", "-".repeat(width.into()), render("table", &[tetrahedra(), long.clone()], style));
     }
 }

@@ -53,8 +53,19 @@ pub struct Score {
     pub stretch: [f64; 3],
     pub worst: usize,
     pub by_region: bool,
+    pub checks: Checks,
     pub allow_missing_nodes: bool,
     pub run_info: bool,
+}
+
+/// Which checks are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Checks {
+    /// Those that cost next to nothing.
+    Standard,
+    /// Duplicate elements and coincident nodes too.
+    All,
 }
 
 /// `[verdict]`
@@ -184,6 +195,7 @@ impl Default for Score {
             stretch: Frame::OWN.stretch,
             worst: 0,
             by_region: false,
+            checks: Checks::Standard,
             allow_missing_nodes: false,
             run_info: true,
         }
@@ -378,6 +390,7 @@ impl Config {
             judgement: self.verdict.judgement()?,
             worst: score.worst,
             by_region: score.by_region,
+            all_checks: score.checks == Checks::All || self.verdict.needs_all_checks(),
             most_regions: limits.regions,
             run_info: score.run_info,
             progress: None,
@@ -386,6 +399,11 @@ impl Config {
 }
 
 impl Verdict {
+    /// Whether a rule is about a check that is not always made.
+    fn needs_all_checks(&self) -> bool {
+        self.rules.iter().any(|row| meshgauge::summary::Checks::COSTLY.contains(&row.measure.as_str()))
+    }
+
     /// What a mesh is judged by.
     fn judgement(&self) -> Result<Judgement, Usage> {
         let mut own = Vec::new();

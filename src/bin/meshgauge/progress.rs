@@ -39,12 +39,12 @@ impl Drop for Bar {
 }
 
 fn draw(name: String, progress: &Progress, stop: &AtomicBool) {
-    let style = ProgressStyle::with_template("{prefix} {wide_bar} {percent:>3}% {msg} {elapsed}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let template = "{prefix} {wide_bar} {percent:>3}% of {total_bytes}, {bytes_per_sec}, {msg}, {eta} left";
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     let bar = ProgressBar::new(0).with_style(style).with_prefix(name);
     while !stop.load(Ordering::Relaxed) {
-        bar.set_length(progress.pieces());
-        bar.set_position(progress.pieces_done());
+        bar.set_length(progress.bytes());
+        bar.set_position(progress.bytes_done());
         bar.set_message(format!("{} elements", progress.elements()));
         std::thread::park_timeout(INTERVAL);
     }

@@ -12,8 +12,11 @@ use crate::error::Result;
 use crate::formats::ElementSink;
 use crate::mesh::ElementType;
 
-/// Most names and entities that are kept.
-const MOST: usize = 1 << 20;
+/// Most entities that are kept.
+const MOST_ENTITIES: usize = 1 << 20;
+/// Most names that are kept, and the longest line that holds one.
+const MOST_NAMES: usize = 1 << 16;
+const LONGEST_LINE: usize = 1 << 10;
 
 /// What the file says about groups and entities.
 #[derive(Debug, Default)]
@@ -30,13 +33,14 @@ impl Groups {
         let from = walk.at();
         walk.skip_to(end)?;
         let window = walk.source.window(from..walk.at());
-        for line in window.split(|b| *b == b'\n').skip(1) {
+        let lines = window.split(|b| *b == b'\n').skip(1);
+        for line in lines.filter(|line| line.len() <= LONGEST_LINE) {
             let text = String::from_utf8_lossy(line);
             let mut parts = text.trim().splitn(3, [' ', '\t']);
             let numbers =
                 (parts.next().and_then(|n| n.parse().ok()), parts.next().and_then(|n| n.parse().ok()));
             if let ((Some(dimension), Some(tag)), Some(name)) = (numbers, parts.next())
-                && self.names.len() < MOST
+                && self.names.len() < MOST_NAMES
             {
                 self.names.insert((dimension, tag), name.trim().trim_matches('"').to_owned());
             }
@@ -121,7 +125,7 @@ impl Groups {
     }
 
     fn add(&mut self, dimension: u8, entity: i64, group: i64) {
-        if self.entities.len() < MOST {
+        if self.entities.len() < MOST_ENTITIES {
             self.entities.insert((dimension, entity), group);
         }
     }

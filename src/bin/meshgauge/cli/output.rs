@@ -15,14 +15,16 @@ pub fn report_names() -> PossibleValuesParser {
 pub struct Output {
     report: &'static Report,
     many: bool,
+    plot: bool,
     kept: Vec<Summary>,
 }
 
 impl Output {
-    /// The report named `name`, or the first; `many` says whether there may be several summaries.
-    pub fn new(name: Option<&str>, many: bool) -> Self {
+    /// The report named `name`, or the first; `many` says whether there may be several summaries, `plot` whether the
+    /// report for people draws histograms.
+    pub fn new(name: Option<&str>, many: bool, plot: bool) -> Self {
         let report = name.and_then(meshgauge::report::find).unwrap_or(&REPORTS[0]);
-        Self { report, many, kept: Vec::new() }
+        Self { report, many, plot, kept: Vec::new() }
     }
 
     /// Prints the summary now, if the report needs no other for it.
@@ -49,7 +51,7 @@ impl Output {
 
     fn print(&self, summaries: &[Summary]) -> io::Result<()> {
         let mut out = stdout().lock();
-        (self.report.render)(summaries, &style(), &mut out)?;
+        (self.report.render)(summaries, &Style { plot: self.plot, ..style() }, &mut out)?;
         out.flush()
     }
 
@@ -65,7 +67,7 @@ impl Output {
 /// How stdout wants it.
 pub fn style() -> Style {
     let color = stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty());
-    Style { color, width: stdout().is_terminal().then(terminal_width).flatten() }
+    Style { color, width: stdout().is_terminal().then(terminal_width).flatten(), plot: false }
 }
 
 fn terminal_width() -> Option<u16> {

@@ -7,13 +7,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use meshgauge::error::Kind;
-use meshgauge::mesh::{System, three};
+use meshgauge::export::Selection;
+use meshgauge::input::Scratch;
+use meshgauge::mesh::{ElementWriter, System, three};
 use meshgauge::summary::Expectation;
 use meshgauge::{Error, Options, Progress, Summary};
 
 use super::ConfigFile;
 use super::output::Output;
-use crate::config::Config;
+use crate::config::{Checks, Config};
 use crate::exit::{Status, Usage};
 use crate::folder::{Found, Walk};
 use crate::names::{self, Folder};
@@ -86,6 +88,10 @@ pub struct Args {
     #[arg(long, value_name = "region", value_parser = ["region"])]
     by: Option<String>,
 
+    /// Which checks are made; all looks for duplicate elements and coincident nodes too, which takes scratch space.
+    #[arg(long, value_name = "standard|all", value_enum, hide_possible_values = true)]
+    checks: Option<Checks>,
+
     /// The true volume of the domain; the mesh fails if its own is off by more than the tolerance.
     #[arg(long, value_name = "V", conflicts_with = "expect_area", value_parser = positive)]
     expect_volume: Option<f64>,
@@ -111,6 +117,18 @@ pub struct Args {
     /// Count elements that name missing nodes, and leave them out, instead of refusing the file.
     #[arg(long)]
     allow_missing_nodes: bool,
+
+    /// Draw the histograms, in the width of the terminal.
+    #[arg(long)]
+    plot: bool,
+
+    /// Write every element with its scores to a file: .csv, .parquet or .vtu, as its extension says.
+    #[arg(long, value_name = "FILE")]
+    per_element: Option<PathBuf>,
+
+    /// Into that file, write only elements that have a score under V.
+    #[arg(long, value_name = "V", visible_alias = "only-below", requires = "per_element", value_parser = positive)]
+    below: Option<f64>,
 
     /// Print errors only, unless --format asks for a report.
     #[arg(short, long)]
@@ -164,6 +182,7 @@ impl Args {
         score.stretch = self.stretch.map_or(score.stretch, |stretch| stretch.0);
         score.worst = self.worst.map_or(score.worst, usize::from);
         score.by_region |= self.by.is_some();
+        score.checks = self.checks.unwrap_or(score.checks);
         score.allow_missing_nodes |= self.allow_missing_nodes;
         score.run_info &= !self.no_run_info;
         config.verdict.fail_under.extend(self.fail_under.iter().cloned());
@@ -198,8 +217,12 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
     let meshes = meshes(&args.inputs, config, &mut status);
     let places = args.out.as_deref().map(|out| places(&meshes, out)).transpose()?;
     let many = args.inputs.len() > 1 || meshes.first().is_none_or(|mesh| mesh.within.is_some());
+    if let Some(file) = args.per_element.as_ref().filter(|_| many) {
+        let file = file.display();
+        return Err(Usage(format!("{file} takes the elements of one mesh, not of several")).into());
+    }
     let print = !args.quiet || args.format.is_some();
-    let mut output = print.then(|| Output::new(args.format.as_deref(), many));
+    let mut output = print.then(|| Output::new(args.format.as_deref(), many, args.plot));
     for (i, mesh) in meshes.iter().enumerate() {
         match score(mesh, args, &options) {
             Ok(summary) => {
@@ -311,9 +334,21 @@ fn score(mesh: &Mesh, args: &Args, options: &Options) -> meshgauge::Result<Summa
         options.progress = Some(Arc::clone(&progress));
         Bar::start(mesh.path.display().to_string(), progress)
     });
+    let mut writer = args.per_element.as_deref().map(|file| export(file, args, &options)).transpose()?;
+    let writer: Option<&mut dyn ElementWriter> = match &mut writer {
+        Some(writer) => Some(writer.as_mut()),
+        None => None,
+    };
     if mesh.is_stdin() {
-        meshgauge::score_reader("stdin", stdin().lock(), &options)
+        meshgauge::score_reader_each("stdin", stdin().lock(), &options, writer)
     } else {
-        meshgauge::score(&mesh.path, &options)
+        meshgauge::score_each(&mesh.path, &options, writer)
     }
+}
+
+/// Begins the file of single elements.
+fn export(file: &Path, args: &Args, options: &Options) -> meshgauge::Result<Box<dyn ElementWriter>> {
+    let selection = Selection { measures: options.measures.clone(), below: args.below };
+    let scratch = Scratch::new(&options.scratch, options.scratch_bytes);
+    meshgauge::export::create(file, &selection, &scratch)
 }
