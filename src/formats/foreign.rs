@@ -85,7 +85,7 @@ fn has_line(head: &[u8], word: &str) -> bool {
 fn is_tecplot(head: &[u8]) -> bool {
     let upper = head[..head.len().min(4096)].to_ascii_uppercase();
     upper.starts_with(b"#!TDV")
-        || (starts(&upper, &["TITLE", "VARIABLES", "ZONE"])
+        || (lines(&upper).next().is_some_and(|first| starts(first, &["TITLE", "VARIABLES", "ZONE"]))
             && within(&upper, "ZONE")
             && (within(&upper, "VARIABLES") || within(&upper, "DATAPACKING")))
 }
