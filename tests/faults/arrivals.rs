@@ -69,7 +69,7 @@ fn t01_every_producer() {
             names.push(name);
         }
     }
-    log.count(120, "mesh.scored", names.len());
+    log.count(1200, "mesh.scored", names.len());
     let told = told(&site.path("results/meshgauge.jsonl"));
     assert!(told.failed.is_empty(), "{:?}", told.failed);
     assert!(told.scored.values().all(|&count| count == 1), "{:?}", told.scored);
@@ -97,7 +97,7 @@ fn t02_slow_writers_that_pause_for_less_than_the_settle_time() {
         }
     });
     let scored =
-        Follower::new(&site.path("results/meshgauge.jsonl")).count(120, "mesh.scored", count as usize);
+        Follower::new(&site.path("results/meshgauge.jsonl")).count(1200, "mesh.scored", count as usize);
     let told = told(&site.path("results/meshgauge.jsonl"));
     assert!(told.failed.is_empty(), "half a mesh was read: {:?}", told.failed);
     assert!(scored.len() == count as usize && told.scored.values().all(|&count| count == 1));
@@ -136,9 +136,9 @@ fn changed_after(row: &str, count: u64, change: impl Fn(&Site, &str)) {
     names.iter().for_each(|name| site.write(&format!("drop/{name}"), MESH));
     let _daemon = site.start(&["--settle", "100ms"]);
     let mut log = Follower::new(&site.path("results/meshgauge.jsonl"));
-    log.count(120, "mesh.scored", names.len());
+    log.count(1200, "mesh.scored", names.len());
     names.iter().for_each(|name| change(&site, name));
-    let again = log.count(120, "mesh.scored", names.len());
+    let again = log.count(1200, "mesh.scored", names.len());
     let expected: HashMap<_, _> = names.iter().map(|name| (name.clone(), 1)).collect();
     assert_eq!(again, expected);
     all_well(&site, names.iter().map(String::as_str));
@@ -204,7 +204,7 @@ fn t08_preallocated_and_filled_slowly() {
             });
         }
     });
-    Follower::new(&site.path("results/meshgauge.jsonl")).count(120, "mesh.scored", count as usize);
+    Follower::new(&site.path("results/meshgauge.jsonl")).count(1200, "mesh.scored", count as usize);
     assert!(told(&site.path("results/meshgauge.jsonl")).failed.is_empty());
     let names: Vec<_> = (0..count).map(|number| format!("{number}.msh")).collect();
     all_well(&site, names.iter().map(String::as_str));

@@ -131,6 +131,7 @@ fn t20_t24_t25_killed_at_random_times_with_200_meshes_in_flow() {
     let mut results = 0;
     for seed in 0..kills.div_ceil(each) {
         results += ended_at_random(seed, each, Signal::KILL);
+        println!("T20: {} kills", (seed + 1) * each);
     }
     done(
         "T20, T24, T25",

@@ -105,7 +105,7 @@ fn t30_malformed_meshes_one_after_another() {
     }
     let daemon = site.start(&["--settle", "100ms"]);
     let mut log = Follower::new(&site.path("results/meshgauge.jsonl"));
-    let failed = log.count(120, "mesh.failed", count as usize);
+    let failed = log.count(1200, "mesh.failed", count as usize);
     let start = Instant::now();
     site.write("drop/good.msh", MESH);
     daemon.wait_for("mesh.scored", "good.msh");
