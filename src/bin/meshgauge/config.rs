@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::config_file;
 use crate::exit::Usage;
 use crate::quantity::{Size, Span};
+use crate::series::Naming;
 use crate::{rules, selection};
 
 /// Every setting. `config/meshgauge.toml` says what each means.
@@ -27,6 +28,8 @@ pub struct Config {
     pub verdict: Verdict,
     /// How much may change between two meshes.
     pub compare: Compare,
+    /// What the daemon compares each mesh with.
+    pub baseline: Baseline,
     /// Limits that guard the machine.
     pub limits: Limits,
     /// The daemon.
@@ -91,6 +94,15 @@ pub struct Compare {
     pub checks: f64,
     pub volume: f64,
     pub size: f64,
+}
+
+/// `[baseline]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Baseline {
+    pub compare: bool,
+    pub pattern: String,
 }
 
 /// `[limits]`
@@ -205,6 +217,19 @@ impl Default for Score {
 impl Default for Verdict {
     fn default() -> Self {
         Self { preset: PRESETS[0].name.into(), fail_under: BTreeMap::new(), rules: Vec::new() }
+    }
+}
+
+impl Default for Baseline {
+    fn default() -> Self {
+        Self { compare: true, pattern: String::new() }
+    }
+}
+
+impl Baseline {
+    /// Which meshes are one part.
+    pub fn naming(&self) -> Result<Naming, Usage> {
+        Naming::new(&self.pattern).map_err(|why| Usage(format!("baseline.pattern: {why}")))
     }
 }
 
@@ -324,6 +349,7 @@ impl Config {
         selection::measures(&self.score.measures)?;
         self.verdict.judgement()?;
         self.telemetry.address()?;
+        self.baseline.naming()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
         let stretches = self.score.stretch.iter().all(|factor| factor.is_finite() && *factor > 0.0);
         let wrong = [

@@ -1,5 +1,6 @@
 //! The program: scores meshes on the command line, and as they land in a folder.
 
+mod baseline;
 mod cli;
 mod config;
 mod config_file;
@@ -17,6 +18,7 @@ mod publish;
 mod quantity;
 mod rules;
 mod selection;
+mod series;
 mod state;
 mod status;
 mod suite;

@@ -7,6 +7,7 @@ use super::groups::{Group, groups, published_series, series_of, sizes_of};
 use crate::compare::{Comparison, Outcome};
 use crate::measures::measures;
 use crate::report::comparison::{COLUMNS, cells, rest, side, told};
+use crate::report::details::TextTable;
 use crate::report::figure::{INVESTIGATE, Series};
 use crate::report::numbers::{bytes, count, score, significant};
 use crate::report::safe::escaped;
@@ -24,6 +25,7 @@ pub struct Model {
     changes: Option<Changes>,
     groups: Vec<Group>,
     sizes: Option<String>,
+    details: Vec<Details>,
     checks: Vec<&'static str>,
     not_measured: Vec<NotMeasured>,
     measures: Vec<Definition>,
@@ -89,6 +91,15 @@ struct Changed {
     findings: Vec<(&'static str, [String; 8])>,
 }
 
+/// A table of the worst elements, or of statistics by region.
+#[derive(Debug, Serialize)]
+struct Details {
+    title: String,
+    header: Vec<&'static str>,
+    text_columns: usize,
+    rows: Vec<Vec<String>>,
+}
+
 #[derive(Debug, Serialize)]
 struct NotMeasured {
     name: String,
@@ -125,6 +136,7 @@ impl Model {
             changes: content.changes.map(changes),
             groups: groups(content, &series, &of_2007),
             sizes: sizes_of(content, &series).map(|scene| scene.to_svg()),
+            details: details(content.meshes),
             checks: checks(&Checks::default()).map(|(name, _)| name).to_vec(),
             not_measured: content.meshes.iter().flat_map(not_measured).collect(),
             measures: definitions(content),
@@ -198,6 +210,19 @@ fn changes(comparisons: &[Comparison]) -> Changes {
         columns: COLUMNS,
         meshes: comparisons.iter().filter(|mesh| mesh.outcome != Outcome::Same).map(changed).collect(),
     }
+}
+
+/// The worst elements and the statistics by region, those of all meshes under one title.
+fn details(meshes: &[Summary]) -> Vec<Details> {
+    let mut tables: Vec<Details> = Vec::new();
+    for table in crate::report::details::tables(meshes) {
+        let TextTable { title, header, text_columns, rows } = table;
+        match tables.iter_mut().find(|known| (&known.title, &known.header) == (&title, &header)) {
+            Some(known) => known.rows.extend(rows),
+            None => tables.push(Details { title, header, text_columns, rows }),
+        }
+    }
+    tables
 }
 
 /// The checks by what they count.

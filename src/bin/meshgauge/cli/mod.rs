@@ -1,11 +1,13 @@
 //! The command line: one file a subcommand.
 
+mod baseline;
 mod bench_generators;
 mod compare;
 mod completions;
 mod config;
 mod formats;
 mod generate;
+mod history;
 mod man;
 mod measures;
 mod output;
@@ -53,6 +55,8 @@ enum Command {
     Status(status::Args),
     Compare(compare::Args),
     Report(report::Args),
+    History(history::Args),
+    Baseline(baseline::Args),
     Generate(generate::Args),
     BenchGenerators(bench_generators::Args),
     Formats(formats::Args),
@@ -103,6 +107,8 @@ pub fn run(cli: Cli) -> anyhow::Result<Status> {
             start(&config);
             report::run(&args, &config)
         }
+        Command::History(args) => history::run(&args),
+        Command::Baseline(args) => baseline::run(&args),
         Command::Worker(args) => {
             start(&Config::default());
             worker::run(&args)

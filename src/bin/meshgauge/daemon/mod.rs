@@ -4,13 +4,14 @@
 //! (`pool`) and puts down what became of them (`record`). Events of the kernel only make it look sooner.
 
 mod done;
-mod fields;
+pub mod fields;
 mod hints;
 mod log;
 mod pool;
 mod process;
 mod protocol;
 mod record;
+mod regression;
 mod service;
 mod settle;
 mod signals;
@@ -25,6 +26,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
+use crate::baseline::Baselines;
 use crate::config::{Config, Watch};
 use crate::exit::{Status, Usage};
 use crate::file_system;
@@ -33,6 +35,7 @@ use crate::state::State;
 
 use log::{Event, Log};
 use record::Record;
+use regression::Watchman;
 use telemetry::Telemetry;
 use watching::Watching;
 
@@ -106,6 +109,13 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
     log.hear_with(telemetry.heard());
     let state = State::open(&places.state)?;
     let mut record = Record::new(log, state, &places.results, mode.quiet)?;
+    if config.baseline.compare {
+        record.watch_for_regressions(Watchman {
+            baselines: Baselines::of(&places.state),
+            naming: config.baseline.naming()?,
+            tolerances: config.compare.tolerances(),
+        });
+    }
     if torn > 0 {
         record.event(Event::warn("log.repaired").with("bytes", torn))?;
     }

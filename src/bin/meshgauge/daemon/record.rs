@@ -14,6 +14,7 @@ use super::done::Done;
 use super::fields;
 use super::log::{Event, Log};
 use super::protocol::Failure;
+use super::regression::Watchman;
 use crate::identity::Identity;
 use crate::publish;
 use crate::state::{Failed, Id, Stage, State};
@@ -25,6 +26,7 @@ pub struct Record {
     done: Done,
     results: PathBuf,
     quiet: bool,
+    watchman: Option<Watchman>,
 }
 
 impl Record {
@@ -33,9 +35,15 @@ impl Record {
         for folder in state.interrupted_folders()? {
             publish::sweep(&results.join(folder));
         }
-        let record = Self { log, state, done: Done::default(), results: results.to_owned(), quiet };
+        let record =
+            Self { log, state, done: Done::default(), results: results.to_owned(), quiet, watchman: None };
         record.catch_up()?;
         Ok(record)
+    }
+
+    /// Compares each mesh that is scored with its baseline from now on.
+    pub fn watch_for_regressions(&mut self, watchman: Watchman) {
+        self.watchman = Some(watchman);
     }
 
     /// Remembers the outcomes that the log tells and the database may not know of.
@@ -163,10 +171,25 @@ impl Record {
         let seconds = summary.run.as_ref().map_or(time.as_secs_f64(), |run| run.seconds);
         let event = Event::info("mesh.scored").mesh(path).with("id", id.to_string()).with("seconds", seconds);
         self.log_outcome(id, fields::flatten(event, summary).with("summary", place.to_string_lossy()))?;
+        self.tell_changes(path, id, summary)?;
         publish::publish(&place, &summary.to_json()).with_context(|| place.display().to_string())?;
         self.end(id, Stage::Scored, |state| state.score(id, path, summary, file_name(&place)))?;
         self.say(&fields::line(path, summary, &place));
         Ok(())
+    }
+
+    /// Tells what got worse or better since the baseline. A crash just after it makes it be told again. A baseline that
+    /// cannot be read or written holds up no mesh.
+    fn tell_changes(&mut self, path: &Path, id: Id, summary: &Summary) -> anyhow::Result<()> {
+        let Some(watchman) = &self.watchman else { return Ok(()) };
+        match watchman.look(path, summary) {
+            Ok(Some(event)) => self.log.append_durably(event.with("id", id.to_string())),
+            Ok(None) => Ok(()),
+            Err(error) => {
+                tracing::warn!("{}: not compared with its baseline: {error:#}", path.display());
+                Ok(())
+            }
+        }
     }
 
     /// It cannot be scored. If the machine is at fault it stays to be done.

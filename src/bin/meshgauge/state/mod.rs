@@ -5,6 +5,7 @@
 //! the log of results, which is on disk before (`recovery`). Network file systems do not carry the shared memory of a
 //! write-ahead log: there it is kept with a rollback journal.
 
+mod history;
 mod id;
 mod lookup;
 mod meshes;
@@ -21,6 +22,7 @@ use rusqlite::{Connection, Transaction};
 
 use crate::file_system;
 
+pub use history::Entry;
 pub use id::Id;
 pub use lookup::Known;
 pub use recovery::{LogMark, Logged};
