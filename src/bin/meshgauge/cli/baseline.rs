@@ -1,5 +1,6 @@
 //! `meshgauge baseline accept NAME`
 
+use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use clap::Subcommand;
@@ -7,6 +8,7 @@ use clap::Subcommand;
 use super::{ConfigFile, history};
 use crate::baseline::{Baselines, summary_at};
 use crate::daemon::Places;
+use crate::daemon::fields::printable;
 use crate::exit::{Status, Usage};
 
 /// Say what the daemon compares a part with.
@@ -55,6 +57,7 @@ pub fn run(args: &Args) -> anyhow::Result<Status> {
     };
     let summary = summary_at(&places.results.join(last))?;
     Baselines::of(&places.state).accept(name, &summary)?;
-    println!("{}: compared with {} from now on", name.display(), summary.mesh.path.escape_default());
+    let (part, path) = (name.display().to_string(), &summary.mesh.path);
+    writeln!(stdout(), "{}", printable(&format!("{part}: compared with {path} from now on")))?;
     Ok(Status::Fine)
 }
