@@ -63,7 +63,7 @@ fn a_sliver_is_a_regression_once_the_date_is_stripped_and_accepting_it_moves_the
     let folder = nights();
     let here = folder.path();
     let worse = ("mesh.regressed".to_owned(), "pit-2026-11-20.msh".to_owned());
-    assert_eq!(events(here), [worse.clone()]);
+    assert_eq!(events(here), std::slice::from_ref(&worse));
     let output = run(here, "baseline accept pit --config c.toml");
     assert!(output.status.success(), "{}", text(&output.stderr));
     night(here, "pit-2026-11-21.msh", &mesh(0.01));
