@@ -28,6 +28,28 @@ pub enum At {
     Byte(u64),
 }
 
+/// Which limit was passed: one of [`crate::input::Limits`], or one that stands in the code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Bound {
+    /// A limit that nobody can set.
+    #[default]
+    Fixed,
+    /// `file_bytes`
+    FileBytes,
+    /// `unpacked_bytes`
+    UnpackedBytes,
+    /// `unpacked_ratio`
+    UnpackedRatio,
+    /// `window_bytes`
+    WindowBytes,
+    /// `line_bytes`
+    LineBytes,
+    /// `include_depth`
+    IncludeDepth,
+    /// `include_count`
+    IncludeCount,
+}
+
 /// What went wrong.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -65,6 +87,8 @@ pub enum Kind {
         what: String,
         /// The limit, with its unit.
         limit: String,
+        /// Which one.
+        bound: Bound,
     },
     /// An element names a node that the file does not define.
     #[error("element {element} names node {node}, which the file does not define")]
@@ -108,9 +132,14 @@ impl Error {
         Self::new(Kind::Unsupported(what.into()))
     }
 
-    /// A limit was passed.
+    /// A limit was passed that nobody can set.
     pub fn limit(what: impl Into<String>, limit: impl fmt::Display) -> Self {
-        Self::new(Kind::Limit { what: what.into(), limit: limit.to_string() })
+        Self::limit_of(Bound::Fixed, what, limit)
+    }
+
+    /// A limit was passed.
+    pub fn limit_of(bound: Bound, what: impl Into<String>, limit: impl fmt::Display) -> Self {
+        Self::new(Kind::Limit { what: what.into(), limit: limit.to_string(), bound })
     }
 
     /// A resource of the machine ran out.

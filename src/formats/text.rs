@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::error::{Error, Result};
+use crate::error::{Bound, Error, Result};
 use crate::formats::PIECE_BYTES;
 use crate::input::{Input, Limits, Source};
 
@@ -177,7 +177,8 @@ impl<'s> LineReader<'s> {
         let rest = &window[(at - start) as usize..];
         let len = found.or_else(|| end_in(*start, window)).unwrap_or(rest.len());
         if len > self.limit {
-            let error = Error::limit("length of a line", format!("{} bytes", self.limit));
+            let error =
+                Error::limit_of(Bound::LineBytes, "length of a line", format!("{} bytes", self.limit));
             return Err(self.source.place(error, crate::input::Spot::Text(at)));
         }
         self.at = at + len as u64 + 1;
@@ -213,7 +214,7 @@ pub fn end_of_line(input: &Input, source: &Source, at: u64, end: u64) -> Result<
         Some(k) => Ok(at + k as u64 + 1),
         None if (window.len() as u64) <= limit => Ok(end),
         None => {
-            let error = Error::limit("length of a line", format!("{limit} bytes"));
+            let error = Error::limit_of(Bound::LineBytes, "length of a line", format!("{limit} bytes"));
             Err(source.place(error, crate::input::Spot::Text(at)))
         }
     }

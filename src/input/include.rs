@@ -13,7 +13,7 @@ use rustix::io::Errno;
 
 use super::regular::not_regular;
 use super::{Input, Limits, Source};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Bound, Error, Kind, Result};
 
 /// `O_NONBLOCK`, for a FIFO would wait for a writer.
 const FLAGS: OFlags = OFlags::RDONLY.union(OFlags::CLOEXEC).union(OFlags::NONBLOCK).union(OFlags::NOCTTY);
@@ -60,10 +60,18 @@ impl<'i> Siblings<'i> {
     pub fn open(&mut self, from: &Sibling, name: &Path) -> Result<Sibling> {
         let limits = &self.input.limits;
         if self.opened >= limits.include_count {
-            return Err(Error::limit("number of included files", limits.include_count));
+            return Err(Error::limit_of(
+                Bound::IncludeCount,
+                "number of included files",
+                limits.include_count,
+            ));
         }
         if from.chain.len() > limits.include_depth {
-            return Err(Error::limit("nesting of included files", limits.include_depth));
+            return Err(Error::limit_of(
+                Bound::IncludeDepth,
+                "nesting of included files",
+                limits.include_depth,
+            ));
         }
         self.opened += 1;
         let Some(root) = &self.input.folder else {

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
-use crate::error::{Error, Kind, Result};
+use crate::error::{Bound, Error, Kind, Result};
 use packed::Packed;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -126,7 +126,8 @@ impl Input {
         }
         let source = Source::new(path, file)?;
         if source.len() > limits.file_bytes {
-            return Err(Error::limit("the size of the file", bytes(limits.file_bytes)).in_file(path));
+            return Err(Error::limit_of(Bound::FileBytes, "the size of the file", bytes(limits.file_bytes))
+                .in_file(path));
         }
         let bytes_on_disk = source.len();
         Self::new(source, None, bytes_on_disk, OnceLock::new(), limits, scratch)

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::bytes;
-use crate::error::{Error, Result};
+use crate::error::{Bound, Error, Result};
 
 const BUFFER_BYTES: usize = 256 << 10;
 
@@ -103,7 +103,9 @@ impl<'p, R: Read> Packed<'p, R> {
         self.to += count;
         if self.read > self.limit {
             let limit = bytes(self.limit);
-            return Err(self.stop(|path| Error::limit("the size of the file", limit).in_file(path)));
+            return Err(self.stop(|path| {
+                Error::limit_of(Bound::FileBytes, "the size of the file", limit).in_file(path)
+            }));
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use zstd::zstd_safe;
 
 use super::packed::Packed;
 use super::{Compression, Limits, Scratch, ScratchFile, bytes};
-use crate::error::{At, Error, Result, excerpt};
+use crate::error::{At, Bound, Error, Result, excerpt};
 
 /// The ratio of bytes out to bytes in is held against its limit once so much has come out.
 const RATIO_HOLDS_FROM: u64 = 64 << 20;
@@ -104,11 +104,19 @@ impl Unpacked<'_> {
     fn keep(&mut self, count: usize, packed_bytes: u64) -> Result<()> {
         let total = self.file.len() + count as u64;
         if total > self.limits.unpacked_bytes {
-            return Err(Error::limit("the size of the content", bytes(self.limits.unpacked_bytes)));
+            return Err(Error::limit_of(
+                Bound::UnpackedBytes,
+                "the size of the content",
+                bytes(self.limits.unpacked_bytes),
+            ));
         }
         let ratio = self.limits.unpacked_ratio;
         if total > RATIO_HOLDS_FROM && total > packed_bytes.saturating_mul(ratio) {
-            return Err(Error::limit("the number of bytes that a packed byte yields", ratio));
+            return Err(Error::limit_of(
+                Bound::UnpackedRatio,
+                "the number of bytes that a packed byte yields",
+                ratio,
+            ));
         }
         self.file.write(&self.buffer[..count])
     }
@@ -127,7 +135,7 @@ impl Unpacked<'_> {
         let at = At::Byte(packed.position().get());
         if asks_too_much(&error) {
             let what = format!("the window that the {name} stream asks for");
-            return Error::limit(what, bytes(self.limits.window_bytes)).at(at);
+            return Error::limit_of(Bound::WindowBytes, what, bytes(self.limits.window_bytes)).at(at);
         }
         if error.kind() == io::ErrorKind::UnexpectedEof {
             return Error::malformed(format!("the rest of the {name} stream"), "the end of the file").at(at);

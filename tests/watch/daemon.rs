@@ -23,20 +23,32 @@ pub const LONGER: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0
 pub const BAD: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 x 0 0\n$EndNodes\n$Elements\n0\n\
     $EndElements\n";
 
+/// A mesh that takes a worker a while: so many elements, all the same.
+pub fn large_mesh(elements: u32) -> String {
+    let rows: String = (1..=elements).map(|i| format!("{i} 4 2 1 1 1 2 3 4\n")).collect();
+    MESH.replace("1\n1 4 2 1 1 1 2 3 4\n", &format!("{elements}\n{rows}"))
+}
+
 /// Nothing takes longer, even on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Folders for a daemon, outliving it.
 pub struct Site {
     folder: TempDir,
+    log: &'static str,
 }
 
 impl Site {
     /// Empty folders.
     pub fn new() -> Self {
+        Self::with_log("results/meshgauge.jsonl")
+    }
+
+    /// Empty folders for a daemon that is told to log elsewhere.
+    pub fn with_log(log: &'static str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         fs::create_dir(folder.path().join("drop")).expect("a drop");
-        Self { folder }
+        Self { folder, log }
     }
 
     /// A path within the site.
@@ -91,9 +103,23 @@ impl Site {
 
     /// All lines of the log.
     pub fn log(&self) -> Vec<Value> {
-        let Ok(file) = File::open(self.path("results/meshgauge.jsonl")) else { return Vec::new() };
-        let lines = BufReader::new(file).lines();
-        lines.map(|line| serde_json::from_str(&line.expect("UTF-8")).expect("each line is JSON")).collect()
+        lines(&self.path(self.log))
+    }
+
+    /// The log and those that were put away.
+    pub fn logs(&self) -> Vec<PathBuf> {
+        let log = self.path(self.log);
+        let name = log.file_name().expect("a name").to_string_lossy().into_owned();
+        let entries = fs::read_dir(log.parent().expect("a folder")).expect("a folder");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        paths
+            .filter(|path| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with(&name)))
+            .collect()
+    }
+
+    /// All lines of all logs.
+    pub fn all_logs(&self) -> Vec<Value> {
+        self.logs().iter().flat_map(|log| lines(log)).collect()
     }
 
     /// The lines of an event.
@@ -125,6 +151,12 @@ impl Site {
         names.sort();
         names
     }
+}
+
+fn lines(log: &Path) -> Vec<Value> {
+    let Ok(file) = File::open(log) else { return Vec::new() };
+    let lines = BufReader::new(file).lines();
+    lines.map(|line| serde_json::from_str(&line.expect("UTF-8")).expect("each line is JSON")).collect()
 }
 
 fn collect(root: &Path, folder: &Path, names: &mut Vec<String>) {
@@ -185,16 +217,29 @@ impl Daemon<'_> {
     pub fn worker(&self) -> u32 {
         self.site.write("drop/first.msh", MESH);
         self.wait_for("mesh.scored", "first.msh");
+        let workers = self.workers();
+        assert_eq!(workers.len(), 1, "with one seat there is one worker");
+        workers[0]
+    }
+
+    /// Whether it runs.
+    pub fn is_alive(&mut self) -> bool {
+        self.child.try_wait().expect("a child").is_none()
+    }
+
+    /// The daemon's workers.
+    pub fn workers(&self) -> Vec<u32> {
         let children = format!("/proc/{}/task", self.child.id());
         let mut workers = Vec::new();
         for thread in fs::read_dir(children).expect("the daemon's threads") {
             let path = thread.expect("a thread").path().join("children");
-            let line = BufReader::new(File::open(path).expect("its children")).lines().next();
-            let line = line.map(|line| line.expect("numbers")).unwrap_or_default();
+            // The thread may have ended.
+            let Ok(file) = File::open(path) else { continue };
+            let line = BufReader::new(file).lines().next();
+            let line = line.and_then(Result::ok).unwrap_or_default();
             workers.extend(line.split_whitespace().map(|pid| pid.parse::<u32>().expect("a number")));
         }
-        assert_eq!(workers.len(), 1, "with one seat there is one worker");
-        workers[0]
+        workers
     }
 }
 
@@ -219,3 +264,42 @@ pub fn one_worker(site: &Site, more: &str) {
 
 /// The option that names it.
 pub const ONE_WORKER: [&str; 2] = ["--config", "meshgauge.toml"];
+
+/// A file system that is mounted for a test.
+pub struct Mounted(PathBuf);
+
+impl Mounted {
+    /// Memory as a file system, at a folder of the site. `None`, said aloud, where nobody may mount.
+    pub fn memory(at: PathBuf, options: &str) -> Option<Self> {
+        let mut mount = Command::new("mount");
+        mount.args(["-t", "tmpfs", "-o", options, "meshgauge-test"]).arg(&at);
+        Self::by(mount, at)
+    }
+
+    /// The folder `from` at the folder `at`, by a program that can be stopped. `None`, said aloud, where there is no
+    /// bindfs.
+    pub fn bound(from: &Path, at: PathBuf) -> Option<Self> {
+        let mut mount = Command::new("bindfs");
+        mount.arg(from).arg(&at);
+        Self::by(mount, at)
+    }
+
+    fn by(mut mount: Command, at: PathBuf) -> Option<Self> {
+        fs::create_dir_all(&at).expect("a folder");
+        let program = mount.get_program().to_owned();
+        match mount.stderr(Stdio::null()).status() {
+            Ok(status) if status.success() => Some(Self(at)),
+            _ => {
+                eprintln!("skipped: {} does not work here", program.display());
+                None
+            }
+        }
+    }
+}
+
+impl Drop for Mounted {
+    fn drop(&mut self) {
+        // It may be gone already.
+        let _ = Command::new("umount").arg("-l").arg(&self.0).stderr(Stdio::null()).status();
+    }
+}

@@ -4,6 +4,12 @@
 mod arriving;
 mod daemon;
 mod failing;
+mod full;
+mod limits;
+mod mounts;
 mod naming;
+mod operating;
+mod quarantine;
 mod status;
 mod stopping;
+mod whole;

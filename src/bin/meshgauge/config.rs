@@ -34,6 +34,8 @@ pub struct Config {
     pub limits: Limits,
     /// The daemon.
     pub watch: Watch,
+    /// The daemon's log of results.
+    pub log: Log,
     /// The processes that score for the daemon.
     pub worker: Worker,
     /// What the daemon tells of itself.
@@ -129,14 +131,40 @@ pub struct Watch {
     pub results: PathBuf,
     pub log: PathBuf,
     pub state: PathBuf,
+    pub done: Done,
+    pub sidecars: Vec<String>,
     pub settle: Span,
     pub scan: Span,
+    pub settle_network: Span,
+    pub scan_network: Span,
     pub events: bool,
     pub depth: usize,
     pub symlinks: Symlinks,
     pub ignore: Vec<String>,
     pub patience: Span,
     pub drain: Span,
+}
+
+/// How a file is known to be whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Done {
+    /// It stands still.
+    Settle,
+    /// It was renamed into place, or stands still.
+    Rename,
+    /// Another file beside it says so.
+    Sidecar,
+}
+
+/// `[log]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct Log {
+    pub rotate_bytes: Size,
+    pub rotate_age: Span,
+    pub keep: usize,
 }
 
 /// Which symbolic links to files are followed.
@@ -160,6 +188,7 @@ pub struct Worker {
     pub time: Span,
     pub memory: Size,
     pub retry: Span,
+    pub quarantine: u32,
 }
 
 /// `[telemetry]`
@@ -291,8 +320,12 @@ impl Default for Watch {
             results: "results".into(),
             log: PathBuf::new(),
             state: PathBuf::new(),
+            done: Done::Settle,
+            sidecars: [".done", ".ok"].map(String::from).to_vec(),
             settle: Span(Duration::from_secs(2)),
             scan: Span(Duration::from_secs(15)),
+            settle_network: Span(Duration::from_secs(90)),
+            scan_network: Span(Duration::from_secs(30)),
             events: true,
             depth: 32,
             symlinks: Symlinks::Inside,
@@ -303,6 +336,12 @@ impl Default for Watch {
     }
 }
 
+impl Default for Log {
+    fn default() -> Self {
+        Self { rotate_bytes: Size(256 << 20), rotate_age: Span(Duration::ZERO), keep: 0 }
+    }
+}
+
 impl Default for Worker {
     fn default() -> Self {
         Self {
@@ -310,6 +349,7 @@ impl Default for Worker {
             time: Span(Duration::from_secs(3600)),
             memory: Size(1 << 30),
             retry: Span(Duration::from_secs(300)),
+            quarantine: 2,
         }
     }
 }
@@ -358,6 +398,17 @@ impl Config {
             (self.score.worst > MOST_WORST, format!("score.worst must be at most {MOST_WORST}")),
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
             (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),
+            (self.watch.settle_network.0.is_zero(), "watch.settle_network must be longer than 0s".to_owned()),
+            (self.watch.scan_network.0.is_zero(), "watch.scan_network must be longer than 0s".to_owned()),
+            (
+                self.watch.sidecars.iter().any(String::is_empty),
+                "watch.sidecars must not hold \"\"".to_owned(),
+            ),
+            (
+                self.watch.done == Done::Sidecar && self.watch.sidecars.is_empty(),
+                "watch.sidecars must name an ending where watch.done is \"sidecar\"".to_owned(),
+            ),
+            (self.worker.quarantine == 0, "worker.quarantine must be at least 1".to_owned()),
             (self.watch.depth == 0, "watch.depth must be at least 1".to_owned()),
             (!(1..=1024).contains(&self.worker.count), "worker.count must be from 1 to 1024".to_owned()),
             (self.worker.time.0.is_zero(), "worker.time must be longer than 0s".to_owned()),

@@ -1,10 +1,6 @@
 //! What kind of file system a folder is on, as far as it matters for settling and for the state.
 
 use std::path::Path;
-use std::time::Duration;
-
-/// Attributes of files are cached this long on network file systems (the `acregmax` of NFS).
-const CACHED: Duration = Duration::from_secs(60);
 
 /// File systems that other machines may write to, by the number that `statfs` gives.
 #[rustfmt::skip]
@@ -27,14 +23,9 @@ pub fn network(folder: &Path) -> Option<&'static str> {
     REMOTE.iter().find(|(number, _)| *number == kind).map(|(_, name)| *name)
 }
 
-/// Advice where the settle time is shorter than what a network file system needs.
-pub fn advice(drop: &Path, settle: Duration) -> Option<String> {
-    let name = network(drop)?;
-    (settle < CACHED).then(|| {
-        format!(
-            "on {name} another machine's writes may show late: set watch.settle over {} s, or have producers \
-             rename finished files into place",
-            CACHED.as_secs()
-        )
-    })
+/// Whether the kernel's name of a type of file system is that of a network one.
+pub fn is_network(kind: &str) -> bool {
+    const KINDS: [&str; 11] =
+        ["nfs", "nfs4", "cifs", "smb3", "smbfs", "lustre", "gpfs", "beegfs", "ceph", "9p", "afs"];
+    KINDS.contains(&kind) || kind == "fuse" || kind.starts_with("fuse.")
 }

@@ -1,27 +1,48 @@
-//! Reads a folder through: what stands in it, in the order of the names.
+//! Reads a folder through: what stands in it.
 //!
 //! Files are looked at and not opened, so a FIFO cannot hold us up. Names of files that are still being written are
 //! passed over, as are our own results. A folder that is one mesh, such as a case of OpenFOAM, stands among the files and
-//! is not looked into.
+//! is not looked into. What is found is told as it is found, so a folder of a million files takes no more memory than a
+//! small one.
 
-use std::ffi::OsStr;
-use std::fs::{self, Metadata};
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, Metadata, OpenOptions};
 use std::io;
-use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::ops::ControlFlow;
+use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
 use meshgauge::formats;
+use rustix::fs::OFlags;
 
 use crate::config::{Symlinks, Watch};
 use crate::identity::Identity;
 
+/// So many names of a folder are read before they are looked at, in their order.
+const NAMES_AT_A_TIME: usize = 4096;
+
 /// How a folder is read through.
+#[derive(Debug, Clone)]
 pub struct Walk {
     root: PathBuf,
+    /// Where the walk begins, within the root.
+    start: PathBuf,
     depth: usize,
     symlinks: Symlinks,
     ignore: Vec<String>,
     excluded: Vec<PathBuf>,
+    barred: Vec<PathBuf>,
+}
+
+/// What a walk comes upon; paths are within the root.
+#[derive(Debug)]
+pub enum Sight {
+    /// A file, or something else that is no folder.
+    File(PathBuf, Found),
+    /// A folder, with its device and inode, before what stands in it.
+    Folder(PathBuf, (u64, u64)),
+    /// Something that could not be looked at.
+    Problem(PathBuf, io::Error),
 }
 
 /// What a folder holds.
@@ -29,8 +50,6 @@ pub struct Walk {
 pub struct Scan {
     /// Files by their path within the folder, in the order of the names.
     pub files: Vec<(PathBuf, Found)>,
-    /// The folder and its sub-folders: device and inode by path within the folder.
-    pub folders: Vec<(PathBuf, (u64, u64))>,
     /// What could not be looked at.
     pub problems: Vec<(PathBuf, io::Error)>,
 }
@@ -49,10 +68,12 @@ impl Walk {
     pub fn new(root: &Path, rules: &Watch) -> Self {
         Self {
             root: root.to_owned(),
+            start: PathBuf::new(),
             depth: rules.depth,
             symlinks: rules.symlinks,
             ignore: rules.ignore.clone(),
             excluded: Vec::new(),
+            barred: Vec::new(),
         }
     }
 
@@ -61,91 +82,143 @@ impl Walk {
         self.excluded.push(path.to_owned());
     }
 
+    /// Begins at the sub-folder `start`, and leaves out the sub-folders in `barred` without so much as a look.
+    pub fn part(&self, start: PathBuf, barred: Vec<PathBuf>) -> Self {
+        Self { start, barred, ..self.clone() }
+    }
+
     /// The folder that is walked through.
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// Reads the folder through.
+    /// Reads the folder through, and keeps it all.
     pub fn scan(&self) -> Scan {
-        let excluded: Vec<_> = self
-            .excluded
-            .iter()
-            .filter_map(|path| fs::metadata(path).ok())
-            .map(|data| place(&data))
-            .collect();
         let mut scan = Scan::default();
+        let _ = self.each(&mut |sight| {
+            match sight {
+                Sight::File(path, found) => scan.files.push((path, found)),
+                Sight::Problem(path, error) => scan.problems.push((path, error)),
+                Sight::Folder(..) => {}
+            }
+            ControlFlow::Continue(())
+        });
+        scan.files.sort_by(|a, b| a.0.cmp(&b.0));
+        scan
+    }
+
+    /// Reads the folder through, and tells each thing as it is found, until told to stop.
+    pub fn each(&self, tell: &mut dyn FnMut(Sight) -> ControlFlow<()>) -> ControlFlow<()> {
+        let excluded = self.excluded.iter().filter_map(|path| fs::metadata(path).ok());
+        let excluded: Vec<_> = excluded.map(|data| place(&data)).collect();
         // Folders that are still to be read, the next one last.
-        let mut pending = vec![(PathBuf::new(), 0)];
+        let mut pending = vec![(self.start.clone(), self.start.components().count())];
         while let Some((folder, depth)) = pending.pop() {
             let mut below = Vec::new();
-            if let Err(error) = self.read(&folder, &excluded, &mut scan, &mut below) {
-                scan.problems.push((folder, error));
-                continue;
+            match self.read(&folder, &excluded, tell, &mut below) {
+                Ok(flow) => flow?,
+                Err(error) => {
+                    tell(Sight::Problem(folder, error))?;
+                    continue;
+                }
             }
             if depth + 1 < self.depth {
                 below.sort_by(|a, b| b.cmp(a));
                 pending.extend(below.into_iter().map(|path| (path, depth + 1)));
             } else if !below.is_empty() {
                 let cause = io::Error::other("its sub-folders lie deeper than the limit on depth");
-                scan.problems.push((folder, cause));
+                tell(Sight::Problem(folder, cause))?;
             }
         }
-        scan.files.sort_by(|a, b| a.0.cmp(&b.0));
-        scan
+        ControlFlow::Continue(())
     }
 
-    /// Reads one folder: files go to `scan`, its sub-folders to `below`.
+    /// Reads one folder: files are told, its sub-folders go to `below`.
     fn read(
         &self,
         folder: &Path,
         excluded: &[(u64, u64)],
-        scan: &mut Scan,
+        tell: &mut dyn FnMut(Sight) -> ControlFlow<()>,
         below: &mut Vec<PathBuf>,
-    ) -> io::Result<()> {
+    ) -> io::Result<ControlFlow<()>> {
         let here = self.root.join(folder);
         let data = fs::metadata(&here)?;
         if excluded.contains(&place(&data)) {
-            return Ok(());
+            return Ok(ControlFlow::Continue(()));
         }
-        scan.folders.push((folder.to_owned(), place(&data)));
-        for entry in fs::read_dir(&here)? {
-            let name = entry?.file_name();
-            if ignored_by(&self.ignore, &name).is_some() {
-                continue;
+        let mut entries = fs::read_dir(&here)?;
+        if tell(Sight::Folder(folder.to_owned(), place(&data))).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        loop {
+            let mut names = Vec::new();
+            for entry in entries.by_ref().take(NAMES_AT_A_TIME) {
+                names.push(entry?.file_name());
             }
-            let path = folder.join(name);
-            let data = match fs::symlink_metadata(self.root.join(&path)) {
-                // It went away since the folder was read.
-                Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-                Err(error) => {
-                    scan.problems.push((path, error));
-                    continue;
-                }
-                Ok(data) => data,
-            };
-            if excluded.contains(&place(&data)) {
-                continue;
+            if names.is_empty() {
+                return Ok(ControlFlow::Continue(()));
             }
-            if !data.is_dir() {
-                if !self.is_part(&path) {
-                    let found = self.found(&path, &data);
-                    scan.files.push((path, found));
+            names.sort();
+            for name in names {
+                if self.meet(folder, name, excluded, tell, below).is_break() {
+                    return Ok(ControlFlow::Break(()));
                 }
-            } else if let Some((found, files)) = self.mesh_of_folder(&path) {
-                self.follow_mesh(&files, scan);
-                scan.files.push((path, found));
-            } else {
-                below.push(path);
             }
         }
-        Ok(())
     }
 
-    /// What stands under the name of a file now; `None` if nothing does.
-    pub fn look(&self, path: &Path) -> Option<Found> {
+    /// Looks at one entry of a folder.
+    fn meet(
+        &self,
+        folder: &Path,
+        name: OsString,
+        excluded: &[(u64, u64)],
+        tell: &mut dyn FnMut(Sight) -> ControlFlow<()>,
+        below: &mut Vec<PathBuf>,
+    ) -> ControlFlow<()> {
+        let path = folder.join(&name);
+        if ignored_by(&self.ignore, &name).is_some() || self.barred.contains(&path) {
+            return ControlFlow::Continue(());
+        }
+        let data = match fs::symlink_metadata(self.root.join(&path)) {
+            // It went away since the folder was read.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return ControlFlow::Continue(()),
+            Err(error) => return tell(Sight::Problem(path, error)),
+            Ok(data) => data,
+        };
+        if excluded.contains(&place(&data)) {
+            return ControlFlow::Continue(());
+        }
+        if !data.is_dir() {
+            if self.is_part(&path) {
+                return ControlFlow::Continue(());
+            }
+            let found = self.found(&path, &data);
+            return tell(Sight::File(path, found));
+        }
+        let Some((found, files)) = self.mesh_of_folder(&path) else {
+            below.push(path);
+            return ControlFlow::Continue(());
+        };
+        self.follow_mesh(&files, tell)?;
+        tell(Sight::File(path, found))
+    }
+
+    /// What stands under the name of a file now; `None` if nothing does. A look that is `fresh` opens the file, because
+    /// network file systems ask the server then, and else answer from memory.
+    pub fn look(&self, path: &Path, fresh: bool) -> Option<Found> {
         if !self.is_reached_without_links(path) {
             return None;
+        }
+        if fresh {
+            // A FIFO must not hold us up.
+            let flags = (OFlags::NONBLOCK | OFlags::NOFOLLOW | OFlags::NOCTTY).bits().cast_signed();
+            let file = OpenOptions::new().read(true).custom_flags(flags).open(self.root.join(path));
+            if let Ok(data) = file.and_then(|file| file.metadata())
+                && data.is_file()
+            {
+                return Some(Found::File(Identity::from(&data)));
+            }
         }
         let data = fs::symlink_metadata(self.root.join(path)).ok()?;
         let mesh = data.is_dir().then(|| self.mesh_of_folder(path)).flatten();
@@ -180,14 +253,19 @@ impl Walk {
         files.is_some_and(|files| files.first().and_then(|main| main.file_name()) != path.file_name())
     }
 
-    /// Adds the folder that the files of a mesh lie in to those whose changes are worth a look.
-    fn follow_mesh(&self, files: &[PathBuf], scan: &mut Scan) {
+    /// Tells of the folder that the files of a mesh lie in: its changes are worth a look.
+    fn follow_mesh(
+        &self,
+        files: &[PathBuf],
+        tell: &mut dyn FnMut(Sight) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let folder = files.first().and_then(|file| file.parent());
         if let Some(folder) = folder
             && let (Ok(inner), Ok(data)) = (folder.strip_prefix(&self.root), fs::metadata(folder))
         {
-            scan.folders.push((inner.to_owned(), place(&data)));
+            tell(Sight::Folder(inner.to_owned(), place(&data)))?;
         }
+        ControlFlow::Continue(())
     }
 
     /// Whether a file lies in the folder that is walked through, wherever symbolic links lead.
@@ -282,10 +360,10 @@ mod tests {
             fs::write(place.join("a.msh"), "x").expect("written");
         }
         let walk = Walk::new(folder.path(), &Watch::default());
-        assert!(walk.look(Path::new("sub/a.msh")).is_some());
+        assert!(walk.look(Path::new("sub/a.msh"), false).is_some());
         fs::remove_dir_all(folder.path().join("sub")).expect("removed");
         std::os::unix::fs::symlink(outside.path(), folder.path().join("sub")).expect("linked");
-        assert_eq!(walk.look(Path::new("sub/a.msh")), None);
+        assert_eq!(walk.look(Path::new("sub/a.msh"), false), None);
     }
 
     #[test]

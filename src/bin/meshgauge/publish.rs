@@ -38,6 +38,14 @@ fn unfinished(path: &Path, text: &str) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
+/// Writes so many bytes to a file in the folder, has them on disk, and takes them away again.
+pub fn try_writing(folder: &Path, bytes: usize) -> io::Result<()> {
+    let mut file = tempfile::Builder::new().prefix(UNFINISHED.0).suffix(UNFINISHED.1).tempfile_in(folder)?;
+    // Zeros might be taken for a hole.
+    file.write_all(&vec![b'x'; bytes])?;
+    file.as_file().sync_all()
+}
+
 /// Gives a published file another name in the same folder.
 pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     fs::rename(from, to)?;

@@ -8,7 +8,7 @@ pub mod table;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
+use crate::error::{Bound, Error, Result};
 use crate::formats::binary::Endian;
 use crate::input::{Input, ScratchFile, Source, Spot};
 
@@ -93,7 +93,7 @@ impl<'i> Unpacked<'i> {
         self.len += bytes.len() as u64;
         let limit = self.input.limits.unpacked_bytes;
         if self.len > limit {
-            return Err(Error::limit("unpacked size", format!("{limit} bytes")));
+            return Err(Error::limit_of(Bound::UnpackedBytes, "unpacked size", format!("{limit} bytes")));
         }
         let file = match &mut self.file {
             Some(file) => file,

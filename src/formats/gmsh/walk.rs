@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::rows::Rows;
-use crate::error::{Error, Result, excerpt};
+use crate::error::{Bound, Error, Result, excerpt};
 use crate::formats::PIECE_BYTES;
 use crate::formats::text::Placed;
 use crate::input::{Input, Source, Spot, Window};
@@ -100,7 +100,8 @@ impl<'i> Walk<'i> {
     }
 
     fn too_long(&self) -> Error {
-        let error = Error::limit("length of a line", format!("{} bytes", self.line_bytes));
+        let error =
+            Error::limit_of(Bound::LineBytes, "length of a line", format!("{} bytes", self.line_bytes));
         self.source.place(error, Spot::Text(self.at))
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use flate2::{Decompress, FlushDecompress, Status};
 
-use crate::error::{Error, Result};
+use crate::error::{Bound, Error, Result};
 use crate::input::{Input, Spot};
 
 /// Unpacks the zlib stream at `range` and hands on what comes out, piece by piece, until `take` says no.
@@ -30,12 +30,16 @@ pub(super) fn unpack(
         let (packed, total) = (at - range.start, zlib.total_out());
         let limits = &input.limits;
         if total > limits.unpacked_bytes {
-            let error =
-                Error::limit("unpacked size of a variable", format!("{} bytes", limits.unpacked_bytes));
+            let error = Error::limit_of(
+                Bound::UnpackedBytes,
+                "unpacked size of a variable",
+                format!("{} bytes", limits.unpacked_bytes),
+            );
             return Err(source.place(error, Spot::Binary(range.start)));
         }
         if total > FREE && total / limits.unpacked_ratio > packed {
-            let error = Error::limit("bytes unpacked from one byte", limits.unpacked_ratio);
+            let error =
+                Error::limit_of(Bound::UnpackedRatio, "bytes unpacked from one byte", limits.unpacked_ratio);
             return Err(source.place(error, Spot::Binary(range.start)));
         }
         if !take(&buffer[..found])? || status == Status::StreamEnd {

@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     state: Option<PathBuf>,
 
-    /// How long a file must stand still before it is scored [default: 2s].
+    /// How long a file must stand still before it is scored [default: 2s, on network file systems 90s].
     #[arg(long, value_name = "DURATION")]
     settle: Option<Span>,
 
@@ -55,6 +55,8 @@ pub struct Args {
 
 const AFTER: &str = "\
 Signals: SIGTERM and SIGINT stop the daemon after the meshes in work (exit status 0); a second one stops it now.
+SIGHUP reads the configuration again; one that is not sound changes nothing. SIGUSR1 begins a new log after somebody
+moved the old one away.
 
 Exit status with --once, the highest over the meshes of this run:
   0  all were scored; a warning is fine
@@ -78,7 +80,9 @@ impl Args {
                 setting.clone_from(path);
             }
         }
-        watch.settle = self.settle.unwrap_or(watch.settle);
+        if let Some(settle) = self.settle {
+            (watch.settle, watch.settle_network) = (settle, settle);
+        }
         config.check()?;
         Ok(config)
     }
@@ -87,5 +91,5 @@ impl Args {
 /// Runs the daemon.
 pub fn run(args: &Args, config: Config) -> anyhow::Result<Status> {
     let places = Places::of(&config.watch);
-    daemon::run(config, places, daemon::Mode { once: args.once, quiet: args.quiet })
+    daemon::run(config, places, daemon::Mode { once: args.once, quiet: args.quiet }, &|| args.config())
 }

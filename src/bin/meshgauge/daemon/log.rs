@@ -5,12 +5,16 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 
 use anyhow::Context;
+use rustix::fs::FallocateFlags;
+use rustix::io::Errno;
 use serde_json::{Map, Value};
 
+use super::rotation;
 use super::telemetry::Heard;
+use crate::config;
 use crate::path_text::PathText;
 use crate::state::{LogMark, Logged};
 
@@ -18,6 +22,9 @@ use crate::state::{LogMark, Logged};
 pub struct Log {
     path: PathBuf,
     file: File,
+    begun: Instant,
+    /// Up to here there is room on the disk.
+    reserved: u64,
     heard: Option<Arc<Heard>>,
 }
 
@@ -82,12 +89,51 @@ impl Log {
             file.set_len(whole)?;
             file.sync_all()?;
         }
-        Ok((Self { path: path.to_owned(), file, heard: None }, torn))
+        let begun = rotation::begun(&file);
+        Ok((Self { path: path.to_owned(), file, begun, reserved: 0, heard: None }, torn))
     }
 
     /// Tells of each line that is written from now on.
     pub fn hear_with(&mut self, heard: Arc<Heard>) {
         self.heard = Some(heard);
+    }
+
+    /// Begins another file under the same name.
+    fn begin_anew(&mut self) -> io::Result<()> {
+        let (log, _) = Self::open(&self.path)?;
+        *self = Self { heard: self.heard.take(), ..log };
+        Ok(())
+    }
+
+    /// Opens the log again if another file or none stands under its name, as after rotation by somebody else; says
+    /// whether that was so.
+    pub fn reopen_if_moved(&mut self) -> io::Result<bool> {
+        let here = self.file.metadata()?;
+        let moved = match fs::metadata(&self.path) {
+            Ok(there) => (there.dev(), there.ino()) != (here.dev(), here.ino()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => true,
+            Err(error) => return Err(error),
+        };
+        if moved {
+            self.begin_anew()?;
+        }
+        Ok(moved)
+    }
+
+    /// Puts the log away and begins another, if it is time; returns where the old one is.
+    pub fn rotate_if_due(&mut self, rules: &config::Log) -> io::Result<Option<PathBuf>> {
+        if !rotation::is_due(rules, self.file.metadata()?.len(), self.begun) {
+            return Ok(None);
+        }
+        let away = rotation::put_away(&self.path)?;
+        self.begin_anew()?;
+        rotation::thin_out(&self.path, rules.keep)?;
+        Ok(Some(away))
+    }
+
+    /// The folder of the log.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
     /// The end of the log.
@@ -112,6 +158,7 @@ impl Log {
         let mut line = event.to_string();
         line.push('\n');
         let length = self.file.metadata()?.len();
+        self.reserve(length, line.len() as u64)?;
         let written = self.file.write(line.as_bytes())?;
         if written < line.len() {
             self.file.set_len(length)?;
@@ -123,19 +170,56 @@ impl Log {
         Ok(())
     }
 
-    /// The outcomes that the log tells behind the mark.
-    pub fn outcomes_since(&self, mark: LogMark) -> io::Result<Vec<Logged>> {
-        let mut file = File::open(&self.path)?;
-        let same = file.metadata()?.ino() == mark.inode;
-        file.seek(SeekFrom::Start(if same { mark.offset } else { 0 }))?;
-        let mut lines = BufReader::new(file);
-        let (mut line, mut outcomes) = (Vec::new(), Vec::new());
-        while lines.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? > 0 {
-            outcomes.extend(outcome(&line));
-            line.clear();
+    /// Makes sure that there is room for a line before it is written, so that nobody who follows the log ever sees half
+    /// of one.
+    fn reserve(&mut self, length: u64, line: u64) -> io::Result<()> {
+        if length < self.reserved && length + line <= self.reserved {
+            return Ok(());
         }
+        let bytes = if line <= RESERVE { RESERVE } else { line };
+        for bytes in [bytes, line] {
+            match rustix::fs::fallocate(&self.file, FallocateFlags::KEEP_SIZE, length, bytes) {
+                Ok(()) => {
+                    self.reserved = length + bytes;
+                    return Ok(());
+                }
+                Err(Errno::NOSPC | Errno::DQUOT) if bytes > line => {}
+                // What the file system cannot reserve is found out by writing.
+                Err(Errno::OPNOTSUPP | Errno::NOSYS | Errno::INVAL) => return Ok(()),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
+    }
+
+    /// The outcomes that the log tells behind the mark, which may be in a log that was put away since.
+    pub fn outcomes_since(&self, mark: LogMark) -> io::Result<Vec<Logged>> {
+        let mut outcomes = Vec::new();
+        let here = File::open(&self.path)?;
+        if here.metadata()?.ino() == mark.inode {
+            read_outcomes(here, mark.offset, &mut outcomes)?;
+            return Ok(outcomes);
+        }
+        for path in rotation::put_away_before(&self.path)? {
+            let away = File::open(path)?;
+            if away.metadata()?.ino() == mark.inode {
+                read_outcomes(away, mark.offset, &mut outcomes)?;
+            }
+        }
+        read_outcomes(here, 0, &mut outcomes)?;
         Ok(outcomes)
     }
+}
+
+/// Reads the outcomes of a log from byte `from` on.
+fn read_outcomes(mut log: File, from: u64, outcomes: &mut Vec<Logged>) -> io::Result<()> {
+    log.seek(SeekFrom::Start(from))?;
+    let (mut lines, mut line) = (BufReader::new(log), Vec::new());
+    while lines.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? > 0 {
+        outcomes.extend(outcome(&line));
+        line.clear();
+    }
+    Ok(())
 }
 
 /// The outcome that a line tells, if it tells one.
@@ -147,6 +231,9 @@ fn outcome(line: &[u8]) -> Option<Logged> {
 
 /// The events that end a version of a mesh, or one try at it.
 const OUTCOMES: [&str; 4] = ["mesh.scored", "mesh.failed", "mesh.quarantined", "mesh.ignored"];
+
+/// Room is reserved for so many bytes at a time.
+const RESERVE: u64 = 64 << 10;
 
 /// Lines of ours are shorter by far.
 const LONGEST_LINE: u64 = 1 << 20;
@@ -184,6 +271,7 @@ fn whole_lines(file: &mut File) -> io::Result<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quantity::Size;
 
     fn text(path: &Path) -> String {
         let mut bytes = Vec::new();
@@ -235,5 +323,34 @@ mod tests {
         assert_eq!(found(&log, start), scored);
         assert_eq!(found(&log, LogMark { inode: 0, ..log.mark().expect("a mark") }), scored, "another file");
         assert_eq!(found(&log, log.mark().expect("a mark")), []);
+    }
+
+    #[test]
+    fn outcomes_are_found_in_a_log_that_was_put_away() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut log, _) = Log::open(&folder.path().join("log.jsonl")).expect("opened");
+        log.append(Event::info("mesh.scored").with("id", "1")).expect("written");
+        let mark = log.mark().expect("a mark");
+        log.append(Event::info("mesh.scored").with("id", "2")).expect("written");
+        let rules = config::Log { rotate_bytes: Size(1), ..config::Log::default() };
+        assert!(log.rotate_if_due(&rules).expect("rotated").is_some());
+        assert!(log.rotate_if_due(&rules).expect("nothing to do").is_none(), "an empty log stays");
+        log.append(Event::info("mesh.scored").with("id", "3")).expect("written");
+        let found: Vec<_> =
+            log.outcomes_since(mark).expect("read").into_iter().map(|outcome| outcome.id).collect();
+        assert_eq!(found, ["2", "3"]);
+    }
+
+    #[test]
+    fn a_log_that_was_moved_away_is_begun_again() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("log.jsonl");
+        let (mut log, _) = Log::open(&path).expect("opened");
+        log.append(Event::info("daemon.started")).expect("written");
+        assert!(!log.reopen_if_moved().expect("looked"));
+        fs::rename(&path, folder.path().join("log.jsonl.1")).expect("moved");
+        assert!(log.reopen_if_moved().expect("looked"));
+        log.append(Event::info("daemon.stopping")).expect("written");
+        assert!(text(&path).contains("daemon.stopping") && !text(&path).contains("daemon.started"));
     }
 }

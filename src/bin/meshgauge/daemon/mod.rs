@@ -1,17 +1,26 @@
 //! The daemon: each mesh that lands in the drop is scored once it stands still.
 //!
-//! One loop owns all state: it looks (`folder`), waits until files stand still (`tracking`), hands them to workers
-//! (`pool`) and puts down what became of them (`record`). Events of the kernel only make it look sooner.
+//! One loop owns all state (`watching`): it has the drop looked at by threads (`scanners`), waits until files are whole
+//! (`tracking`), hands them to workers (`pool`) and puts down what became of them (`record`). Events of the kernel only
+//! make it look sooner.
 
+mod degraded;
 mod done;
 pub mod fields;
+mod finishing;
 mod hints;
 mod log;
+mod looking;
+mod mounts;
 mod pool;
 mod process;
+mod producer;
 mod protocol;
 mod record;
 mod regression;
+mod reload;
+mod rotation;
+mod scanners;
 mod service;
 mod settle;
 mod signals;
@@ -23,14 +32,13 @@ mod worker;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::Context;
 
 use crate::baseline::Baselines;
 use crate::config::{Config, Watch};
 use crate::exit::{Status, Usage};
-use crate::file_system;
-use crate::folder::Walk;
 use crate::state::State;
 
 use log::{Event, Log};
@@ -42,7 +50,7 @@ use watching::Watching;
 pub use worker::serve;
 
 /// Where the daemon reads and writes.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Places {
     /// Meshes are dropped here.
     pub drop: PathBuf,
@@ -53,6 +61,9 @@ pub struct Places {
     /// What must outlive the daemon.
     pub state: PathBuf,
 }
+
+/// Reads the configuration again.
+pub type ReadConfig<'c> = &'c dyn Fn() -> anyhow::Result<Config>;
 
 /// How the daemon runs.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +90,9 @@ impl Places {
             state: or(&watch.state, given.unwrap_or_else(|| watch.results.join(".meshgauge"))),
         }
     }
+}
 
+impl Places {
     /// The same from whatever folder they are seen.
     fn absolute(&self) -> std::io::Result<Self> {
         let absolute = std::path::absolute::<&Path>;
@@ -92,23 +105,49 @@ impl Places {
     }
 }
 
+/// How often a daemon that found no room to start tries again.
+const BETWEEN_STARTS: Duration = Duration::from_secs(5);
+
 /// Runs the daemon until it is stopped or, in `once` mode, until all is scored.
-pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status> {
+pub fn run(
+    config: Config,
+    places: Places,
+    mode: Mode,
+    read_config: ReadConfig<'_>,
+) -> anyhow::Result<Status> {
     if !places.drop.is_dir() {
         let drop = places.drop.display();
         return Err(Usage(format!("{drop}: expected a folder that meshes are dropped into")).into());
     }
-    if let Some(advice) = file_system::advice(&places.drop, config.watch.settle.0) {
-        tracing::warn!("{}: {advice}", places.drop.display());
+    let requests = signals::requests().context("signals")?;
+    loop {
+        match start(&config, &places, mode) {
+            Ok((lock, record, telemetry)) => {
+                let watching = Watching::new(config, places, mode, record, telemetry, read_config);
+                let status = watching.run(&requests)?;
+                drop(lock);
+                return Ok(status);
+            }
+            Err(error) if !mode.once && degraded::may_pass(&error) => {
+                tracing::error!("the daemon starts when this has passed: {error:#}");
+                if requests.stop.recv_timeout(BETWEEN_STARTS).is_ok() {
+                    return Ok(Status::Fine);
+                }
+            }
+            Err(error) => return Err(error),
+        }
     }
-    let stop = signals::stop_requests().context("signals")?;
+}
+
+/// Takes over from an earlier daemon.
+fn start(config: &Config, places: &Places, mode: Mode) -> anyhow::Result<(File, Record, Telemetry)> {
     record::make_folders([&places.results, &places.state])?;
     let lock = lock(&places.state)?;
     let (mut log, torn) = Log::open(&places.log).with_context(|| places.log.display().to_string())?;
-    let telemetry = Telemetry::start(&config, &places)?;
-    log.hear_with(telemetry.heard());
     let state = State::open(&places.state)?;
-    let mut record = Record::new(log, state, &places.results, mode.quiet)?;
+    let telemetry = Telemetry::start(config, places)?;
+    log.hear_with(telemetry.heard());
+    let mut record = Record::new(log, state, places, mode.quiet)?;
     if config.baseline.compare {
         record.watch_for_regressions(Watchman {
             baselines: Baselines::of(&places.state),
@@ -119,16 +158,8 @@ pub fn run(config: Config, places: Places, mode: Mode) -> anyhow::Result<Status>
     if torn > 0 {
         record.event(Event::warn("log.repaired").with("bytes", torn))?;
     }
-    record.event(started(&places, mode))?;
-    let mut walk = Walk::new(&places.drop, &config.watch);
-    for ours in
-        [&places.results, &places.state, &places.log, &config.score.scratch, &config.telemetry.metrics_file]
-    {
-        walk.exclude(ours);
-    }
-    let status = Watching::new(config, walk, record, telemetry, mode).run(&stop)?;
-    drop(lock);
-    Ok(status)
+    record.event(started(places, mode))?;
+    Ok((lock, record, telemetry))
 }
 
 /// Makes sure that no other daemon works with the same state; holds as long as the file is open.

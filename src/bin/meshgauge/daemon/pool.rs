@@ -22,6 +22,8 @@ pub struct Job {
     pub path: PathBuf,
     /// The version that settled.
     pub identity: Identity,
+    /// How it is to be scored.
+    pub config: Arc<Config>,
 }
 
 /// What became of a job.
@@ -52,46 +54,58 @@ pub enum Found {
 
 /// The threads.
 pub struct Pool {
+    drop: PathBuf,
     jobs: Sender<Job>,
+    queue: Receiver<Job>,
+    sender: Sender<Outcome>,
     outcomes: Receiver<Outcome>,
     abandoned: Arc<AtomicBool>,
+    work: Work,
+    seats: usize,
 }
 
+/// Never more threads than this, whatever hangs.
+pub const MOST_SEATS: usize = 1024;
+
 impl Pool {
-    /// Starts the threads; their processes start with the first mesh.
-    pub fn start(drop: &Path, config: &Config, work: &Work) -> Self {
-        let count = config.worker.count;
-        let (jobs, queue) = bounded::<Job>(count);
-        let (sender, outcomes) = bounded(count);
+    /// No threads yet; what they are at is put down in `work`.
+    pub fn new(drop: &Path, work: Work) -> Self {
+        let (jobs, queue) = bounded(MOST_SEATS);
+        let (sender, outcomes) = bounded(MOST_SEATS);
         let abandoned = Arc::new(AtomicBool::new(false));
-        for _ in 0..count {
-            let (queue, sender) = (queue.clone(), sender.clone());
-            let mut seat = Seat {
-                drop: drop.to_owned(),
-                config: shared_out(config),
-                process: None,
-                abandoned: Arc::clone(&abandoned),
-                work: work.clone(),
-            };
-            std::thread::spawn(move || {
-                for job in queue {
-                    let start = Instant::now();
-                    seat.work.begin(&job.path, job.identity.size);
-                    let result = seat.score(&job);
-                    seat.work.end(&job.path);
-                    let Job { path, identity } = job;
-                    if sender.send(Outcome { path, identity, result, time: start.elapsed() }).is_err() {
-                        break;
-                    }
-                }
-            });
-        }
-        Self { jobs, outcomes, abandoned }
+        Self { drop: drop.to_owned(), jobs, queue, sender, outcomes, abandoned, work, seats: 0 }
     }
 
-    /// Hands a job over. The caller keeps count: there are never more jobs than threads, so this does not wait.
-    pub fn give(&self, job: Job) -> anyhow::Result<()> {
+    /// Hands a job over, where `running` others are not done. There is a thread for each, so this does not wait; its
+    /// process starts with its first mesh.
+    pub fn give(&mut self, job: Job, running: usize) -> anyhow::Result<()> {
+        if running >= self.seats {
+            self.start();
+        }
         self.jobs.send(job).map_err(|_| anyhow::anyhow!("the threads that mind the workers are gone"))
+    }
+
+    fn start(&mut self) {
+        self.seats += 1;
+        let (queue, sender) = (self.queue.clone(), self.sender.clone());
+        let mut seat = Seat {
+            drop: self.drop.clone(),
+            process: None,
+            abandoned: Arc::clone(&self.abandoned),
+            work: self.work.clone(),
+        };
+        std::thread::spawn(move || {
+            for job in queue {
+                let start = Instant::now();
+                seat.work.begin(&job.path, job.identity.size);
+                let result = seat.score(&job);
+                seat.work.end(&job.path);
+                let Job { path, identity, .. } = job;
+                if sender.send(Outcome { path, identity, result, time: start.elapsed() }).is_err() {
+                    break;
+                }
+            }
+        });
     }
 
     /// Gets what became of the jobs.
@@ -106,8 +120,7 @@ impl Pool {
 }
 
 /// The configuration for one of several workers that share the processors.
-fn shared_out(config: &Config) -> Config {
-    let mut config = config.clone();
+pub fn shared_out(mut config: Config) -> Config {
     if config.score.threads == 0 {
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
         config.score.threads = (processors / config.worker.count).max(1);
@@ -118,7 +131,6 @@ fn shared_out(config: &Config) -> Config {
 /// One thread's place.
 struct Seat {
     drop: PathBuf,
-    config: Config,
     process: Option<Process>,
     abandoned: Arc<AtomicBool>,
     work: Work,
@@ -130,22 +142,22 @@ impl Seat {
         if let Some(other) = other_version(&path, &job.identity) {
             return other;
         }
-        let found = match self.ask(&path, &job.path) {
+        let found = match self.ask(&path, job) {
             Ok(Answer::Scored(summary)) => Found::Scored(summary),
             Ok(Answer::Failed(failure)) => Found::Failed(failure),
             Err(NoAnswer::Abandoned) => return Found::Abandoned,
             Err(NoAnswer::TimedOut) => {
-                let reason = format!("it took longer than {}", self.config.worker.time);
+                let reason = format!("it took longer than {}", job.config.worker.time);
                 Found::Failed(Failure::new(FailureKind::Timeout, reason))
             }
-            Err(NoAnswer::Died(how)) => Found::Failed(Failure::new(FailureKind::WorkerDied, how)),
+            Err(NoAnswer::Died(how)) => Found::Failed(Failure::of_death(how)),
         };
         // Whatever was found is about one version only if it is still that one.
         other_version(&path, &job.identity).unwrap_or(found)
     }
 
-    fn ask(&mut self, path: &Path, mesh: &Path) -> Result<Answer, NoAnswer> {
-        let request = Request { path: PathText::from(path), config: self.config.clone() };
+    fn ask(&mut self, path: &Path, job: &Job) -> Result<Answer, NoAnswer> {
+        let request = Request { path: PathText::from(path), config: Config::clone(&job.config) };
         let mut line = serde_json::to_vec(&request).map_err(|e| NoAnswer::Died(e.to_string()))?;
         line.push(b'\n');
         let mut process = match self.ready(&line) {
@@ -156,11 +168,10 @@ impl Seat {
             }
         };
         let abandoned = Arc::clone(&self.abandoned);
-        let deadline = deadline(self.config.worker.time.0);
         let answer = process.answer(
-            deadline,
+            deadline(job.config.worker.time.0),
             || abandoned.load(Ordering::Relaxed),
-            |progress| self.work.heard(mesh, progress),
+            |progress| self.work.heard(&job.path, progress),
         );
         if answer.is_ok() {
             self.process = Some(process);

@@ -1,6 +1,8 @@
 //! What the daemon and its workers say to each other: a JSON line each way.
 
-use meshgauge::error::{At, Kind};
+use std::io;
+
+use meshgauge::error::{At, Bound, Kind};
 use meshgauge::{Error, Summary};
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +88,8 @@ pub struct Failure {
 pub enum FailureKind {
     /// The file could not be opened or read.
     Unreadable,
+    /// The file system gave an error that may pass.
+    IoError,
     /// It is no regular file.
     NotAFile,
     /// It holds no bytes.
@@ -96,18 +100,47 @@ pub enum FailureKind {
     Malformed,
     /// It uses something that is not read.
     Unsupported,
-    /// It passes a limit.
+    /// It passes a limit that a format has by itself.
     Limit,
+    /// It passes `limits.file_bytes`.
+    LimitFileBytes,
+    /// It passes `limits.unpacked_bytes`.
+    LimitUnpackedBytes,
+    /// It passes `limits.unpacked_ratio`.
+    LimitUnpackedRatio,
+    /// It passes `limits.window_bytes`.
+    LimitWindowBytes,
+    /// It passes `limits.line_bytes`.
+    LimitLineBytes,
+    /// It passes `limits.include_depth`.
+    LimitIncludeDepth,
+    /// It passes `limits.include_count`.
+    LimitIncludeCount,
     /// Elements name nodes that it does not define.
     MissingNodes,
     /// The machine ran out of something.
     Resource,
     /// The configuration makes no sense.
     Usage,
-    /// It took too long.
+    /// It passes `worker.time`.
     Timeout,
+    /// It passes `worker.memory`.
+    Memory,
     /// The worker ended while it had the mesh.
     WorkerDied,
+}
+
+/// What is done after a failure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Then {
+    /// Nothing: the same file fails the same way.
+    Leave,
+    /// Another try, as often as it takes: the machine is at fault.
+    Retry,
+    /// Other tries, but not for ever.
+    RetrySome,
+    /// Another try; a file that ends its workers again and again is left alone.
+    Quarantine,
 }
 
 impl FailureKind {
@@ -117,9 +150,35 @@ impl FailureKind {
         name.and_then(|name| name.as_str().map(String::from)).unwrap_or_default()
     }
 
-    /// Whether the machine is at fault, so that another try may succeed.
-    pub fn is_resource(self) -> bool {
-        self == FailureKind::Resource
+    /// What is done after it.
+    pub fn then(self) -> Then {
+        match self {
+            FailureKind::Resource => Then::Retry,
+            FailureKind::IoError => Then::RetrySome,
+            FailureKind::Timeout | FailureKind::Memory | FailureKind::WorkerDied => Then::Quarantine,
+            _ => Then::Leave,
+        }
+    }
+
+    fn of_limit(bound: Bound) -> Self {
+        match bound {
+            Bound::Fixed => FailureKind::Limit,
+            Bound::FileBytes => FailureKind::LimitFileBytes,
+            Bound::UnpackedBytes => FailureKind::LimitUnpackedBytes,
+            Bound::UnpackedRatio => FailureKind::LimitUnpackedRatio,
+            Bound::WindowBytes => FailureKind::LimitWindowBytes,
+            Bound::LineBytes => FailureKind::LimitLineBytes,
+            Bound::IncludeDepth => FailureKind::LimitIncludeDepth,
+            Bound::IncludeCount => FailureKind::LimitIncludeCount,
+        }
+    }
+
+    fn of_reading(error: &io::Error) -> Self {
+        // EIO, ENOMEM, ETIMEDOUT, ESTALE, EREMOTEIO: what servers and disks give now and then.
+        match error.raw_os_error() {
+            Some(5 | 12 | 110 | 116 | 121) => FailureKind::IoError,
+            _ => FailureKind::Unreadable,
+        }
     }
 }
 
@@ -127,6 +186,13 @@ impl Failure {
     /// A failure that no error of the library stands for.
     pub fn new(kind: FailureKind, reason: impl Into<String>) -> Self {
         Self { kind, reason: reason.into(), format: None, line: None, byte: None }
+    }
+
+    /// The worker died; how, in words, with what it said last.
+    pub fn of_death(how: String) -> Self {
+        // What Rust says before it aborts.
+        let memory = how.contains("memory allocation of") && how.contains("failed");
+        Self::new(if memory { FailureKind::Memory } else { FailureKind::WorkerDied }, how)
     }
 
     /// What it means for the exit status.
@@ -147,10 +213,11 @@ impl From<&Error> for Failure {
             Kind::UnknownFormat(_) => FailureKind::UnknownFormat,
             Kind::Malformed { .. } => FailureKind::Malformed,
             Kind::Unsupported(_) => FailureKind::Unsupported,
-            Kind::Limit { .. } => FailureKind::Limit,
+            Kind::Limit { bound, .. } => FailureKind::of_limit(*bound),
             Kind::MissingNode { .. } => FailureKind::MissingNodes,
             Kind::Resource { .. } | Kind::Unwritable(_) => FailureKind::Resource,
             Kind::Usage(_) => FailureKind::Usage,
+            Kind::Unreadable(cause) => FailureKind::of_reading(cause),
             _ => FailureKind::Unreadable,
         };
         let (line, byte) = match error.place() {

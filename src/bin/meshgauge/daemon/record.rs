@@ -5,38 +5,50 @@ use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use meshgauge::Summary;
 
+use super::Places;
 use super::done::Done;
 use super::fields;
+use super::finishing::Verdict;
 use super::log::{Event, Log};
-use super::protocol::Failure;
+use super::protocol::{Failure, Then};
 use super::regression::Watchman;
+use crate::config;
 use crate::identity::Identity;
 use crate::publish;
-use crate::state::{Failed, Id, Stage, State};
+use crate::state::{Failed, Id, Stage, State, Tries};
+
+/// How often the log is looked at, whether it is to be rotated or was moved away.
+const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
+
+/// There is room where a file of so many bytes finds some: more than a summary and its line in the log.
+const ROOM: usize = 64 << 10;
 
 /// Log, database and summaries.
 pub struct Record {
     log: Log,
     state: State,
     done: Done,
-    results: PathBuf,
+    /// The outcome that stands in the log and not yet in the database.
+    written: Option<(Id, String)>,
+    minded: Instant,
+    places: Places,
     quiet: bool,
     watchman: Option<Watchman>,
 }
 
 impl Record {
     /// Takes over from an earlier process, and clears away what that had begun.
-    pub fn new(log: Log, state: State, results: &Path, quiet: bool) -> anyhow::Result<Self> {
+    pub fn new(log: Log, state: State, places: &Places, quiet: bool) -> anyhow::Result<Self> {
         for folder in state.interrupted_folders()? {
-            publish::sweep(&results.join(folder));
+            publish::sweep(&places.results.join(folder));
         }
-        let record =
-            Self { log, state, done: Done::default(), results: results.to_owned(), quiet, watchman: None };
+        let (done, minded, places) = (Done::default(), Instant::now(), places.clone());
+        let record = Self { log, state, done, written: None, minded, places, quiet, watchman: None };
         record.catch_up()?;
         Ok(record)
     }
@@ -61,6 +73,35 @@ impl Record {
     /// Writes a line that is about no mesh.
     pub fn event(&mut self, event: Event) -> anyhow::Result<()> {
         self.log.append_durably(event)
+    }
+
+    /// An error if there is no room for results, where they are written.
+    pub fn find_room(&self) -> anyhow::Result<()> {
+        for folder in [self.log.folder(), &self.places.state, &self.places.results] {
+            publish::try_writing(folder, ROOM).with_context(|| folder.display().to_string())?;
+        }
+        Ok(())
+    }
+
+    /// Rotates the log if it is time, or begins another if somebody moved it away. No outcome may be half put down.
+    pub fn mind_log(&mut self, rules: &config::Log) -> anyhow::Result<()> {
+        if self.minded.elapsed() < BETWEEN_LOOKS {
+            return Ok(());
+        }
+        self.minded = Instant::now();
+        self.reopen_log()?;
+        let log = self.places.log.display().to_string();
+        if let Some(away) = self.log.rotate_if_due(rules).with_context(|| log)? {
+            self.log.append(Event::info("log.rotated").with("to", away.to_string_lossy()))?;
+            self.state.set_log_mark(self.log.mark()?)?;
+        }
+        Ok(())
+    }
+
+    /// Begins another log if somebody moved ours away.
+    pub fn reopen_log(&mut self) -> anyhow::Result<()> {
+        self.log.reopen_if_moved().with_context(|| self.places.log.display().to_string())?;
+        Ok(())
     }
 
     /// Whether nothing is left to do for this version.
@@ -120,9 +161,18 @@ impl Record {
     /// A worker is about to get it.
     pub fn claimed(&mut self, path: &Path, identity: &Identity, announced: bool) -> anyhow::Result<()> {
         let transaction = self.state.begin()?;
-        self.state.claim(path, identity)?;
+        let claim = self.state.claim(path, identity)?;
         transaction.commit()?;
+        if claim.again {
+            let event = Event::info("mesh.retried").mesh(path).with("id", Id::of(path, identity).to_string());
+            self.log.append(event.with("attempt", claim.attempt))?;
+        }
         if announced { self.log_claim(path, identity) } else { Ok(()) }
+    }
+
+    /// How often the version was tried.
+    pub fn tries(&self, path: &Path, identity: &Identity) -> anyhow::Result<Tries> {
+        self.state.tries(Id::of(path, identity))
     }
 
     fn log_claim(&mut self, path: &Path, identity: &Identity) -> anyhow::Result<()> {
@@ -136,9 +186,16 @@ impl Record {
         self.log_claim(path, identity)
     }
 
-    /// Writes an outcome to the log, unless an earlier process did.
+    /// Writes an outcome to the log, unless it stands there: an earlier process wrote it, or we did before we had to
+    /// wait for room.
     fn log_outcome(&mut self, id: Id, event: Event) -> anyhow::Result<()> {
-        if self.state.is_logged(id, event.name())? { Ok(()) } else { self.log.append_durably(event) }
+        let key = (id, event.name().to_owned());
+        if self.written.as_ref() == Some(&key) || self.state.is_logged(id, &key.1)? {
+            return Ok(());
+        }
+        self.log.append_durably(event)?;
+        self.written = Some(key);
+        Ok(())
     }
 
     /// Puts an outcome into the database; what the log tells of it stands before the mark from now on.
@@ -153,6 +210,7 @@ impl Record {
         self.state.forget_logged(id)?;
         self.state.set_log_mark(self.log.mark()?)?;
         transaction.commit()?;
+        self.written = None;
         if stage.is_end() {
             self.done.insert(id);
         }
@@ -192,13 +250,26 @@ impl Record {
         }
     }
 
-    /// It cannot be scored. If the machine is at fault it stays to be done.
-    pub fn failed(&mut self, path: &Path, identity: &Identity, failure: &Failure) -> anyhow::Result<()> {
+    /// It cannot be scored, or not yet.
+    pub fn failed(
+        &mut self,
+        path: &Path,
+        identity: &Identity,
+        failure: &Failure,
+        verdict: Verdict,
+    ) -> anyhow::Result<()> {
         let (id, kind) = (Id::of(path, identity), failure.kind.name());
-        let event = Event::error("mesh.failed").mesh(path).with("id", id.to_string());
+        let (stage, event) = match verdict {
+            Verdict::Failed => (Stage::Failed, Event::error("mesh.failed")),
+            Verdict::Again(wait) => {
+                (Stage::Waiting, Event::error("mesh.failed").with("retry_seconds", wait.as_secs_f64()))
+            }
+            Verdict::Quarantined => (Stage::Quarantined, Event::error("mesh.quarantined")),
+        };
+        let event = event.mesh(path).with("id", id.to_string());
         self.log_outcome(id, fields::failure(event, failure))?;
-        let stage = if failure.kind.is_resource() { Stage::Waiting } else { Stage::Failed };
-        let failed = Failed { kind: &kind, reason: &failure.reason };
+        let abnormal = failure.kind.then() == Then::Quarantine;
+        let failed = Failed { kind: &kind, reason: &failure.reason, abnormal };
         self.end(id, stage, |state| state.end(id, stage, Some(failed)))?;
         self.say(&fields::printable(&format!("{}: not scored: {}", path.display(), failure.reason)));
         Ok(())
@@ -239,7 +310,7 @@ impl Record {
     /// Where the summary of the mesh at `path` belongs.
     fn summary_path(&self, path: &Path) -> anyhow::Result<PathBuf> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        Ok(self.results.join(folder).join(self.state.summary_name(path)?))
+        Ok(self.places.results.join(folder).join(self.state.summary_name(path)?))
     }
 
     /// Tells people. That nobody listens is no reason to stop.
@@ -267,8 +338,12 @@ mod tests {
     use super::*;
 
     fn open(folder: &Path) -> Record {
-        let (log, _) = Log::open(&folder.join("log.jsonl")).expect("a log");
-        Record::new(log, State::open(folder).expect("a database"), folder, true).expect("a record")
+        let folder = folder.to_owned();
+        let log = folder.join("log.jsonl");
+        let places = Places { drop: folder.join("drop"), results: folder.clone(), log, state: folder };
+        let (log, _) = Log::open(&places.log).expect("a log");
+        let state = State::open(&places.state).expect("a database");
+        Record::new(log, state, &places, true).expect("a record")
     }
 
     #[test]

@@ -16,7 +16,7 @@ impl Service {
         Self { watchdog: sd_notify::watchdog_enabled(), fed: Instant::now() }
     }
 
-    /// The drop was read through once; from now on meshes are scored.
+    /// Meshes are scored from now on: the drop was read through once, or the configuration again.
     pub fn ready(&self) {
         tell(&[NotifyState::Ready]);
     }
@@ -24,6 +24,14 @@ impl Service {
     /// What the daemon is doing.
     pub fn status(&self, status: &str) {
         tell(&[NotifyState::Status(status)]);
+    }
+
+    /// The configuration is being read again; `ready` ends that.
+    pub fn reloading(&self) {
+        match NotifyState::monotonic_usec_now() {
+            Ok(now) => tell(&[NotifyState::Reloading, now]),
+            Err(error) => tracing::debug!("no monotonic clock: {error}"),
+        }
     }
 
     /// No more meshes are claimed.

@@ -2,7 +2,7 @@
 //!
 //! No single sign tells that a file is complete: a size stands still in a file that is filled out of order, and times
 //! can be set back. So everything that the file system says must stand still, over a time that the monotonic clock
-//! measures, by several looks.
+//! measures, by several looks. A writer that was seen to pause is waited for three times as long as it paused.
 
 use std::time::{Duration, Instant};
 
@@ -14,18 +14,31 @@ const LOOKS: u32 = 3;
 /// An empty file is most likely about to be filled; it must stand still this many times longer.
 const EMPTY: u32 = 5;
 
+/// A file must stand still this many times as long as its writer was seen to pause.
+const PAUSES: u32 = 3;
+
+/// However long the pauses, a file that has stood still for so long is taken.
+const LONGEST: Duration = Duration::from_secs(30 * 60);
+
 /// What was seen of a file that may still be changing.
 #[derive(Debug, Clone, Copy)]
 pub struct Settling {
     identity: Identity,
     since: Instant,
     looks: u32,
+    /// The longest time for which it stood still and then changed.
+    pause: Duration,
 }
 
 impl Settling {
     /// The first look at a file.
     pub fn new(identity: Identity, now: Instant) -> Self {
-        Self { identity, since: now, looks: 1 }
+        Self { identity, since: now, looks: 1, pause: Duration::ZERO }
+    }
+
+    /// How long it must stand still for, from `now` on.
+    pub fn left(&self, now: Instant, settle: Duration) -> Duration {
+        self.quiet(settle).saturating_sub(now.duration_since(self.since))
     }
 
     /// What was seen last.
@@ -33,30 +46,29 @@ impl Settling {
         self.identity
     }
 
-    /// How long it must stand still for, from `now` on.
-    pub fn left(&self, now: Instant, settle: Duration) -> Duration {
-        quiet(&self.identity, settle).saturating_sub(now.duration_since(self.since))
-    }
-
     /// Another look; says whether the file has stood still for long enough.
     pub fn look(&mut self, identity: Identity, now: Instant, settle: Duration) -> bool {
+        let still = now.duration_since(self.since);
         if identity != self.identity {
-            *self = Self::new(identity, now);
+            // Two looks at one state are a pause; less may be the time between two looks.
+            let pause = if self.looks > 1 { self.pause.max(still) } else { self.pause };
+            *self = Self { pause, ..Self::new(identity, now) };
             return false;
         }
         self.looks = self.looks.saturating_add(1);
-        self.looks >= LOOKS && now.duration_since(self.since) >= quiet(&identity, settle)
+        self.looks >= LOOKS && still >= self.quiet(settle)
     }
-}
 
-/// How long a file must stand still.
-fn quiet(identity: &Identity, settle: Duration) -> Duration {
-    if identity.size == 0 {
-        settle * EMPTY
-    } else if identity.has_holes() {
-        settle * 2
-    } else {
-        settle
+    /// How long it must stand still.
+    fn quiet(&self, settle: Duration) -> Duration {
+        let settle = if self.identity.size == 0 {
+            settle * EMPTY
+        } else if self.identity.has_holes() {
+            settle * 2
+        } else {
+            settle
+        };
+        settle.max((self.pause * PAUSES).min(LONGEST))
     }
 }
 
@@ -92,6 +104,24 @@ mod tests {
     fn a_file_whose_times_were_set_back_has_changed() {
         let touched = |second: u64| Identity { changed: (second.min(5).cast_signed(), 0), ..identity(100) };
         assert_eq!(seconds_until_settled(touched), Some(7));
+    }
+
+    #[test]
+    fn a_writer_that_pauses_is_waited_for_longer_than_it_pauses() {
+        // It writes every 1.8 s, five times, and is looked at ten times a second.
+        let start = Instant::now();
+        let mut settling = Settling::new(identity(1), start);
+        let mut settled = Vec::new();
+        for tenth in 1..400_u64 {
+            let size = 1 + (tenth / 18).min(5);
+            let now = start + Duration::from_millis(100 * tenth);
+            if settling.look(identity(size), now, SETTLE) {
+                settled.push(tenth);
+                break;
+            }
+        }
+        // The last write is seen at 9.0 s.
+        assert_eq!(settled, [90 + 3 * 18]);
     }
 
     #[test]

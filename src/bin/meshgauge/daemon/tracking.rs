@@ -1,26 +1,39 @@
 //! The files that are not done with, and what each waits for.
 
-use std::collections::{BTreeMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::producer::Word;
 use super::settle::Settling;
 use crate::identity::Identity;
 use crate::status::Waits;
 
+/// So many files are minded at a time, whatever the drop holds; the others come up in a later scan.
+const MOST: usize = 50_000;
+
 /// A file that is not done with.
 #[derive(Debug)]
 pub struct Tracked {
-    state: State,
+    /// What it waits for.
+    pub state: State,
+    /// The mount that it is on.
+    pub mount: u64,
     /// When it was first seen.
     first: Instant,
+    /// How long it must stand still, as far as it is known.
+    settle: Duration,
+    /// The scan that it was last seen by.
+    scan: u64,
     /// Whether the log tells of it yet; what may turn out to be no mesh is not spoken of.
     announced: bool,
 }
 
 /// What a file waits for.
 #[derive(Debug)]
-enum State {
+pub enum State {
+    /// Its producer's word.
+    Awaiting(Identity),
     /// To stand still.
     Settling(Settling),
     /// A free worker.
@@ -31,10 +44,42 @@ enum State {
     Postponed { identity: Identity, until: Instant },
 }
 
+/// A look at a file.
+#[derive(Debug, Clone, Copy)]
+pub struct Look {
+    /// What was seen.
+    pub identity: Identity,
+    /// What its producer says.
+    pub word: Word,
+    /// When.
+    pub now: Instant,
+    /// How long the file must stand still without a word.
+    pub settle: Duration,
+}
+
+/// Where a file was come upon.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// The mount.
+    pub mount: u64,
+    /// The mount's scan.
+    pub scan: u64,
+}
+
+/// A file that a worker is to get.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Next {
+    /// Its path within the drop.
+    pub path: PathBuf,
+    /// The version that settled.
+    pub identity: Identity,
+    /// Whether the log tells of it yet.
+    pub announced: bool,
+}
+
 /// All of them.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Tracking {
-    settle: Duration,
     files: BTreeMap<PathBuf, Tracked>,
     /// Paths that became ready, the first to be ready first. Some may not be any more.
     queue: VecDeque<PathBuf>,
@@ -43,14 +88,19 @@ pub struct Tracking {
 }
 
 impl Tracking {
-    /// Nothing yet; files must stand still for `settle`.
-    pub fn new(settle: Duration) -> Self {
-        Self { settle, files: BTreeMap::new(), queue: VecDeque::new(), settling: 0, running: 0 }
-    }
-
     /// Whether nothing is left to do.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
+    }
+
+    /// Whether there is no room for another file.
+    pub fn is_full(&self) -> bool {
+        self.files.len() >= MOST
+    }
+
+    /// Whether there is room for many files.
+    pub fn has_room(&self) -> bool {
+        self.files.len() < MOST / 2
     }
 
     /// Number of files that are not done with.
@@ -66,6 +116,11 @@ impl Tracking {
     /// Number of files that are being scored.
     pub fn running(&self) -> usize {
         self.running
+    }
+
+    /// The files, in the order of their paths.
+    pub fn files(&self) -> impl Iterator<Item = (&Path, &Tracked)> {
+        self.files.iter().map(|(path, file)| (path.as_path(), file))
     }
 
     /// When the file was first seen that has been known for the longest time.
@@ -85,8 +140,9 @@ impl Tracking {
             .map(|((path, bytes, first), place)| (path.as_path(), bytes, Waits::Queued(place), first));
         let others = self.files.iter().filter_map(move |(path, file)| {
             let (bytes, waits) = match &file.state {
+                State::Awaiting(identity) => (identity.size, Waits::Word),
                 State::Settling(settling) => {
-                    (settling.identity().size, Waits::Settling(seconds(settling.left(now, self.settle))))
+                    (settling.identity().size, Waits::Settling(seconds(settling.left(now, file.settle))))
                 }
                 State::Postponed { identity, until } => {
                     (identity.size, Waits::Postponed(seconds(until.saturating_duration_since(now))))
@@ -108,106 +164,157 @@ impl Tracking {
         self.files.get(path).is_some_and(|file| file.announced)
     }
 
+    /// The log tells of this file now.
+    pub fn announce(&mut self, path: &Path) {
+        if let Some(file) = self.files.get_mut(path) {
+            file.announced = true;
+        }
+    }
+
     /// A file that was not known.
-    pub fn add(&mut self, path: PathBuf, identity: Identity, now: Instant, announced: bool) {
-        let state = State::Settling(Settling::new(identity, now));
-        if self.files.insert(path, Tracked { state, first: now, announced }).is_none() {
-            self.settling += 1;
+    pub fn add(&mut self, path: PathBuf, place: Place, look: Look, announced: bool) {
+        let state = first_state(&look);
+        let Place { mount, scan } = place;
+        self.remove(&path);
+        self.enter(&path, &state);
+        self.files
+            .insert(path, Tracked { state, mount, scan, first: look.now, settle: look.settle, announced });
+    }
+
+    /// A scan came upon a known file.
+    pub fn seen(&mut self, path: &Path, place: Place) {
+        if let Some(file) = self.files.get_mut(path) {
+            (file.mount, file.scan) = (place.mount, place.scan);
         }
     }
 
     /// Another look at a known file.
-    pub fn look(&mut self, path: &Path, identity: Identity, now: Instant) {
+    pub fn look(&mut self, path: &Path, look: Look) {
         let Some(file) = self.files.get_mut(path) else { return };
-        match &mut file.state {
-            State::Settling(settling) => {
-                if settling.look(identity, now, self.settle) {
-                    file.state = State::Ready(settling.identity());
-                    self.settling -= 1;
-                    self.queue.push_back(path.to_owned());
-                }
-            }
-            State::Ready(seen) if *seen != identity => {
-                file.state = State::Settling(Settling::new(identity, now));
-                self.settling += 1;
-            }
-            State::Postponed { identity: seen, until } if *seen != identity || *until <= now => {
-                file.state = State::Settling(Settling::new(identity, now));
-                self.settling += 1;
-            }
+        let Look { identity, word, now, settle } = look;
+        file.settle = settle;
+        let next = match &mut file.state {
             // What a worker reads is compared when the worker is done.
-            State::Running | State::Ready(_) | State::Postponed { .. } => {}
+            State::Running => None,
+            State::Postponed { identity: seen, until } => {
+                (*seen != identity || *until <= now).then(|| first_state(&look))
+            }
+            State::Awaiting(_) => (word != Word::NotYet).then(|| first_state(&look)),
+            State::Ready(seen) => (*seen != identity).then(|| first_state(&look)),
+            State::Settling(settling) => match word {
+                Word::Whole => Some(State::Ready(identity)),
+                Word::NotYet => Some(State::Awaiting(identity)),
+                Word::None => settling.look(identity, now, settle).then_some(State::Ready(identity)),
+            },
+        };
+        if let Some(state) = next {
+            self.change(path, state);
         }
     }
 
-    /// The paths of the files that may still be changing.
-    pub fn unsettled(&self) -> Vec<PathBuf> {
-        let unsettled = |file: &Tracked| matches!(file.state, State::Settling(_));
+    fn change(&mut self, path: &Path, state: State) {
+        let Some(file) = self.files.get_mut(path) else { return };
+        let left = std::mem::replace(&mut file.state, State::Running);
+        self.leave(&left);
+        self.enter(path, &state);
+        if let Some(file) = self.files.get_mut(path) {
+            file.state = state;
+        }
+    }
+
+    fn leave(&mut self, state: &State) {
+        match state {
+            State::Settling(_) => self.settling -= 1,
+            State::Running => self.running -= 1,
+            State::Awaiting(_) | State::Ready(_) | State::Postponed { .. } => {}
+        }
+    }
+
+    fn enter(&mut self, path: &Path, state: &State) {
+        match state {
+            State::Settling(_) => self.settling += 1,
+            State::Running => self.running += 1,
+            State::Ready(_) => self.queue.push_back(path.to_owned()),
+            State::Awaiting(_) | State::Postponed { .. } => {}
+        }
+    }
+
+    /// The paths of the files on a mount that may still be changing.
+    pub fn unsettled(&self, mount: u64) -> Vec<PathBuf> {
+        let unsettled = |file: &Tracked| file.mount == mount && matches!(file.state, State::Settling(_));
         self.files.iter().filter(|(_, file)| unsettled(file)).map(|(path, _)| path.clone()).collect()
     }
 
-    /// Forgets files that are not in `present`, but for those that a worker has.
-    pub fn keep(&mut self, present: &HashSet<&Path>) {
-        let gone = |path: &PathBuf, file: &Tracked| {
-            !present.contains(path.as_path()) && !matches!(file.state, State::Running)
-        };
-        let gone: Vec<_> = self.files.iter().filter(|(p, f)| gone(p, f)).map(|(p, _)| p.clone()).collect();
-        for path in gone {
-            self.remove(&path);
-        }
+    /// Forgets the files of a mount that its last scan did not come upon, but for those that a worker has.
+    pub fn keep(&mut self, place: Place) {
+        self.forget(|file| {
+            file.mount == place.mount && file.scan != place.scan && !matches!(file.state, State::Running)
+        });
     }
 
-    /// The next file for a worker, if one is ready; it counts as running from now on.
-    pub fn next(&mut self) -> Option<(PathBuf, Identity, bool)> {
-        while let Some(path) = self.queue.pop_front() {
-            let Some(file) = self.files.get_mut(&path) else { continue };
-            if let State::Ready(identity) = file.state {
-                file.state = State::Running;
-                self.running += 1;
-                return Some((path, identity, file.announced));
+    /// Forgets the files of a mount that is no more, but for those that a worker has.
+    pub fn unmounted(&mut self, mount: u64) {
+        self.forget(|file| file.mount == mount && !matches!(file.state, State::Running));
+    }
+
+    /// Forgets the files that are not whole yet and were first seen `patience` ago or longer, and returns them.
+    pub fn give_up(&mut self, now: Instant, patience: Duration) -> Vec<PathBuf> {
+        self.forget(|file| {
+            matches!(file.state, State::Settling(_) | State::Awaiting(_))
+                && now.duration_since(file.first) >= patience
+        })
+    }
+
+    fn forget(&mut self, unwanted: impl Fn(&Tracked) -> bool) -> Vec<PathBuf> {
+        let gone = self.files.iter().filter(|(_, file)| unwanted(file));
+        let gone: Vec<_> = gone.map(|(path, _)| path.clone()).collect();
+        for path in &gone {
+            self.remove(path);
+        }
+        gone
+    }
+
+    /// The next file for a worker, if one is ready.
+    pub fn next(&mut self) -> Option<Next> {
+        while let Some(path) = self.queue.front() {
+            if let Some(Tracked { state: State::Ready(identity), announced, .. }) = self.files.get(path) {
+                return Some(Next { path: path.clone(), identity: *identity, announced: *announced });
             }
+            self.queue.pop_front();
         }
         None
+    }
+
+    /// A worker has the file that `next` told of.
+    pub fn run(&mut self, next: &Next) {
+        self.queue.pop_front();
+        self.change(&next.path, State::Running);
     }
 
     /// Forgets a file.
     pub fn remove(&mut self, path: &Path) -> Option<Tracked> {
         let file = self.files.remove(path)?;
-        match file.state {
-            State::Settling(_) => self.settling -= 1,
-            State::Running => self.running -= 1,
-            State::Ready(_) | State::Postponed { .. } => {}
-        }
+        self.leave(&file.state);
         Some(file)
     }
 
-    /// A running file turned out to be another version: it must settle again.
+    /// The file changed while a worker had it.
     pub fn unsettle(&mut self, path: &Path, identity: Identity, now: Instant) {
-        if let Some(file) = self.remove(path) {
-            let state = State::Settling(Settling::new(identity, now));
-            self.files.insert(path.to_owned(), Tracked { state, ..file });
-            self.settling += 1;
-        }
+        self.change(path, State::Settling(Settling::new(identity, now)));
     }
 
-    /// A running file is to be tried again at `until`.
+    /// The file is tried again later.
     pub fn postpone(&mut self, path: &Path, identity: Identity, until: Instant) {
-        if let Some(file) = self.remove(path) {
-            let state = State::Postponed { identity, until };
-            self.files.insert(path.to_owned(), Tracked { state, ..file });
-        }
+        self.change(path, State::Postponed { identity, until });
     }
+}
 
-    /// Forgets the files that have not settled since they were first seen, `patience` ago or longer, and returns them.
-    pub fn give_up(&mut self, now: Instant, patience: Duration) -> Vec<PathBuf> {
-        let late = |file: &Tracked| {
-            matches!(file.state, State::Settling(_)) && now.duration_since(file.first) >= patience
-        };
-        let late: Vec<_> = self.files.iter().filter(|(_, f)| late(f)).map(|(p, _)| p.clone()).collect();
-        for path in &late {
-            self.remove(path);
-        }
-        late
+/// What a file waits for at the first look.
+fn first_state(look: &Look) -> State {
+    match look.word {
+        Word::Whole => State::Ready(look.identity),
+        Word::NotYet => State::Awaiting(look.identity),
+        Word::None => State::Settling(Settling::new(look.identity, look.now)),
     }
 }
 
@@ -216,27 +323,35 @@ mod tests {
     use super::*;
 
     const SETTLE: Duration = Duration::from_secs(2);
+    const PLACE: Place = Place { mount: 0, scan: 1 };
 
-    fn identity(size: u64) -> Identity {
-        Identity { size, blocks: 8, ..Identity::default() }
+    fn look(size: u64, word: Word, now: Instant) -> Look {
+        Look { identity: Identity { size, blocks: 8, ..Identity::default() }, word, now, settle: SETTLE }
     }
 
     /// Three looks at one size.
     fn settle(tracking: &mut Tracking, path: &Path, size: u64, now: &mut Instant) {
         for _ in 0..3 {
             *now += SETTLE;
-            tracking.look(path, identity(size), *now);
+            tracking.look(path, look(size, Word::None, *now));
         }
+    }
+
+    fn run(tracking: &mut Tracking) -> Option<(PathBuf, u64)> {
+        let next = tracking.next()?;
+        tracking.run(&next);
+        Some((next.path, next.identity.size))
     }
 
     #[test]
     fn a_file_goes_from_settling_to_ready_to_running() {
         let (mut now, path) = (Instant::now(), Path::new("a.inp"));
-        let mut tracking = Tracking::new(SETTLE);
-        tracking.add(path.to_owned(), identity(1), now, true);
+        let mut tracking = Tracking::default();
+        tracking.add(path.to_owned(), PLACE, look(1, Word::None, now), true);
         assert!(tracking.next().is_none());
         settle(&mut tracking, path, 1, &mut now);
-        assert_eq!(tracking.next(), Some((path.to_owned(), identity(1), true)));
+        assert_eq!(tracking.next(), tracking.next(), "it is there until it runs");
+        assert_eq!(run(&mut tracking), Some((path.to_owned(), 1)));
         assert_eq!((tracking.settling(), tracking.running()), (0, 1));
         assert!(tracking.next().is_none());
     }
@@ -244,27 +359,47 @@ mod tests {
     #[test]
     fn a_file_that_changes_while_it_waits_for_a_worker_settles_again() {
         let (mut now, path) = (Instant::now(), Path::new("a.inp"));
-        let mut tracking = Tracking::new(SETTLE);
-        tracking.add(path.to_owned(), identity(1), now, true);
+        let mut tracking = Tracking::default();
+        tracking.add(path.to_owned(), PLACE, look(1, Word::None, now), true);
         settle(&mut tracking, path, 1, &mut now);
-        tracking.look(path, identity(2), now);
+        tracking.look(path, look(2, Word::None, now));
         assert!(tracking.next().is_none());
         settle(&mut tracking, path, 2, &mut now);
-        assert_eq!(tracking.next(), Some((path.to_owned(), identity(2), true)));
+        assert_eq!(run(&mut tracking), Some((path.to_owned(), 2)));
         assert!(tracking.next().is_none());
+    }
+
+    #[test]
+    fn the_producers_word_goes_before_the_wait() {
+        let (mut now, path) = (Instant::now(), Path::new("a.inp"));
+        let mut tracking = Tracking::default();
+        tracking.add(path.to_owned(), PLACE, look(1, Word::NotYet, now), true);
+        for _ in 0..5 {
+            now += SETTLE;
+            tracking.look(path, look(1, Word::NotYet, now));
+        }
+        assert!(tracking.next().is_none());
+        tracking.look(path, look(1, Word::Whole, now));
+        assert_eq!(run(&mut tracking), Some((path.to_owned(), 1)));
+        tracking.add("b.inp".into(), PLACE, look(3, Word::Whole, now), true);
+        assert_eq!(run(&mut tracking), Some(("b.inp".into(), 3)));
+        assert_eq!((tracking.settling(), tracking.running()), (0, 2));
     }
 
     #[test]
     fn what_went_away_is_forgotten_unless_a_worker_has_it() {
         let mut now = Instant::now();
-        let (a, b) = (Path::new("a.inp"), Path::new("b.inp"));
-        let mut tracking = Tracking::new(SETTLE);
-        tracking.add(a.to_owned(), identity(1), now, true);
-        tracking.add(b.to_owned(), identity(1), now, true);
+        let (a, b, elsewhere) = (Path::new("a.inp"), Path::new("b.inp"), Path::new("mount/c.inp"));
+        let mut tracking = Tracking::default();
+        for path in [a, b] {
+            tracking.add(path.to_owned(), PLACE, look(1, Word::None, now), true);
+        }
+        tracking.add(elsewhere.to_owned(), Place { mount: 1, scan: 1 }, look(1, Word::None, now), true);
         settle(&mut tracking, a, 1, &mut now);
-        assert!(tracking.next().is_some());
-        tracking.keep(&HashSet::new());
-        assert!(tracking.contains(a) && !tracking.contains(b));
+        assert!(run(&mut tracking).is_some());
+        tracking.keep(Place { mount: 0, scan: 2 });
+        assert!(tracking.contains(a) && !tracking.contains(b) && tracking.contains(elsewhere));
+        tracking.unmounted(1);
         assert_eq!((tracking.settling(), tracking.running(), tracking.len()), (0, 1, 1));
     }
 }

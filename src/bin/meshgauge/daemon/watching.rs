@@ -1,47 +1,63 @@
-//! The daemon's loop.
+//! The daemon's loop: one thread owns all state, and waits for whatever comes first.
 
-use std::collections::HashSet;
+use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, select};
 
-use super::Mode;
+use super::degraded::{self, Degraded};
 use super::hints::Hints;
 use super::log::Event;
-use super::pool::{Found as Scored, Job, Outcome, Pool};
-use super::protocol::{Failure, FailureKind};
+use super::pool::{Job, MOST_SEATS, Outcome, Pool, shared_out};
+use super::producer::Producer;
 use super::record::Record;
+use super::scanners::{Mount, Rules, Scanners};
 use super::service::Service;
+use super::signals::Requests;
 use super::telemetry::Telemetry;
-use super::tracking::Tracking;
+use super::tracking::{State, Tracking};
+use super::{Mode, Places, ReadConfig};
 use crate::config::Config;
 use crate::exit::Status;
-use crate::folder::{Found, Walk};
-use crate::identity::Identity;
-use crate::names::has_mesh_extension;
+use crate::folder::Walk;
 
 /// How long the threads have to let go of their workers when we stop at once.
 const LETTING_GO: Duration = Duration::from_secs(2);
 
+/// No round of the loop is longer, so that what is due by the clock is done in time.
+const LONGEST_ROUND: Duration = Duration::from_secs(2);
+
 /// Everything that the loop owns.
-pub struct Watching {
-    config: Config,
-    mode: Mode,
-    walk: Walk,
-    hints: Hints,
-    tracking: Tracking,
-    pool: Pool,
-    record: Record,
-    service: Service,
-    telemetry: Telemetry,
-    status: Status,
-    scored: u64,
-    failed: u64,
-    next_scan: Instant,
-    next_look: Instant,
-    /// When the drop was last read through, and how long that took.
-    scanned: Option<(Instant, Duration)>,
+pub struct Watching<'c> {
+    pub(super) config: Arc<Config>,
+    /// The same, for workers that share the processors.
+    pub(super) worker_config: Arc<Config>,
+    pub(super) read_config: ReadConfig<'c>,
+    pub(super) places: Places,
+    pub(super) mode: Mode,
+    /// The drop as an absolute path without links, once it could be found out.
+    pub(super) root: Option<PathBuf>,
+    pub(super) rules: Arc<Rules>,
+    pub(super) scanners: Scanners,
+    pub(super) hints: Hints,
+    /// What arrived by rename and was not come upon yet.
+    pub(super) renamed: HashSet<PathBuf>,
+    /// What could not be looked at, to complain about it once.
+    pub(super) problems: HashSet<PathBuf>,
+    pub(super) tracking: Tracking,
+    pub(super) pool: Pool,
+    /// What workers found and is not put down yet.
+    pub(super) pending: VecDeque<Outcome>,
+    pub(super) degraded: Option<Degraded>,
+    pub(super) record: Record,
+    pub(super) service: Service,
+    pub(super) telemetry: Telemetry,
+    pub(super) status: Status,
+    pub(super) scored: u64,
+    pub(super) failed: u64,
+    pub(super) ready: bool,
 }
 
 /// Why the loop ended.
@@ -52,32 +68,46 @@ enum End {
     Asked(&'static str),
 }
 
-impl Watching {
+impl<'c> Watching<'c> {
     /// Ready to run.
-    pub fn new(config: Config, walk: Walk, record: Record, telemetry: Telemetry, mode: Mode) -> Self {
-        let now = Instant::now();
+    pub fn new(
+        config: Config,
+        places: Places,
+        mode: Mode,
+        record: Record,
+        telemetry: Telemetry,
+        read_config: ReadConfig<'c>,
+    ) -> Self {
+        let rules = Arc::new(rules(&config, &places));
         Self {
+            root: std::fs::canonicalize(&places.drop).ok(),
+            scanners: Scanners::new(),
             hints: Hints::new(config.watch.events && !mode.once),
-            tracking: Tracking::new(config.watch.settle.0),
-            pool: Pool::start(walk.root(), &config, &telemetry.work()),
+            renamed: HashSet::new(),
+            problems: HashSet::new(),
+            tracking: Tracking::default(),
+            pool: Pool::new(&places.drop, telemetry.work()),
+            pending: VecDeque::new(),
+            degraded: None,
             service: Service::new(),
             telemetry,
             status: Status::Fine,
             scored: 0,
             failed: 0,
-            next_scan: now,
-            next_look: now,
-            scanned: None,
-            config,
+            ready: false,
+            worker_config: Arc::new(shared_out(config.clone())),
+            config: Arc::new(config),
+            read_config,
+            places,
             mode,
-            walk,
+            rules,
             record,
         }
     }
 
     /// Runs until there is a reason to stop, then stops in good order.
-    pub fn run(mut self, stop: &Receiver<&'static str>) -> anyhow::Result<Status> {
-        let end = self.watch(stop)?;
+    pub fn run(mut self, requests: &Requests) -> anyhow::Result<Status> {
+        let end = self.watch(requests)?;
         let reason = match end {
             End::Drained => "everything is scored",
             End::Asked(signal) => signal,
@@ -88,199 +118,134 @@ impl Watching {
             .with("running", self.tracking.running())
             .with("scored", self.scored)
             .with("failed", self.failed);
-        self.record.event(stopping)?;
-        self.drain(stop)?;
+        let told = self.record.event(stopping);
+        self.bear(told)?;
+        self.drain(&requests.stop)?;
         self.telemetry.ended(reason, &self.tracking);
         Ok(if self.mode.once { self.status } else { Status::Fine })
     }
 
-    fn watch(&mut self, stop: &Receiver<&'static str>) -> anyhow::Result<End> {
+    fn watch(&mut self, requests: &Requests) -> anyhow::Result<End> {
         loop {
-            self.look()?;
+            self.recover()?;
+            self.mind_log()?;
+            self.ask_scanners()?;
             self.claim()?;
-            self.service.alive();
-            self.telemetry.turned(&self.tracking);
-            if self.mode.once && self.tracking.is_empty() {
+            self.turned();
+            if self.mode.once && self.is_all_done() {
                 return Ok(End::Drained);
             }
             select! {
-                recv(stop) -> signal => return Ok(End::Asked(signal.unwrap_or("no more signals"))),
-                recv(self.pool.outcomes()) -> outcome => self.finish(outcome?)?,
+                recv(requests.stop) -> signal => return Ok(End::Asked(signal.unwrap_or("no more signals"))),
+                recv(requests.reload) -> _ => self.reload()?,
+                recv(requests.reopen) -> _ => self.reopen()?,
+                recv(self.pool.outcomes()) -> outcome => self.take(outcome?)?,
+                recv(self.scanners.reports()) -> report => self.hear(report?)?,
                 recv(self.hints.due()) -> _ => self.hurry(),
                 default(self.pause()) => {}
             }
         }
     }
 
+    fn is_all_done(&self) -> bool {
+        self.tracking.is_empty()
+            && self.pending.is_empty()
+            && self.scanners.mounts().values().all(|mount| {
+                (mount.scanned.is_some() && mount.left_over == 0 && mount.busy.is_none()) || mount.hangs()
+            })
+    }
+
     /// How long there is nothing to do, unless something happens.
     fn pause(&self) -> Duration {
-        let next =
-            if self.tracking.settling() > 0 { self.next_look.min(self.next_scan) } else { self.next_scan };
-        let next = if self.mode.once { self.next_look } else { next };
-        let pause = next.saturating_duration_since(Instant::now());
+        let due = match &self.degraded {
+            Some(degraded) => Some(degraded.next_try),
+            None => {
+                let mounts = self.scanners.mounts().values().filter(|mount| mount.busy.is_none());
+                mounts.filter_map(|mount| self.due(mount)).min()
+            }
+        };
+        let now = Instant::now();
+        let pause = due.map_or(LONGEST_ROUND, |due| due.saturating_duration_since(now)).min(LONGEST_ROUND);
         let pause = pause.min(self.telemetry.longest_round());
         self.service.longest_round().map_or(pause, |longest| pause.min(longest))
     }
 
-    /// An event: the next scan comes sooner. A scan that takes long is not made at every event.
-    fn hurry(&mut self) {
-        if let Some((end, took)) = self.scanned {
-            self.next_scan = self.next_scan.min(end + self.between_looks().max(took * 10));
-        }
+    /// When something is to be asked of a mount whose thread has nothing to do.
+    fn due(&self, mount: &Mount) -> Option<Instant> {
+        let look = (self.tracking.settling() > 0).then_some(mount.next_look);
+        let scan = (!self.mode.once).then_some(mount.next_scan);
+        [look, scan].into_iter().flatten().min()
     }
 
-    /// How long to wait between two looks at a file that may still be changing.
-    fn between_looks(&self) -> Duration {
-        (self.config.watch.settle.0 / 4).clamp(Duration::from_millis(20), Duration::from_secs(5))
-    }
-
-    /// Looks at what is due to be looked at.
-    fn look(&mut self) -> anyhow::Result<()> {
-        let now = Instant::now();
-        let scan_due = if self.mode.once { self.scanned.is_none() } else { now >= self.next_scan };
-        if scan_due {
-            self.scan()?;
-        }
-        if now >= self.next_look && self.tracking.settling() > 0 {
-            for path in self.tracking.unsettled() {
-                match self.walk.look(&path) {
-                    Some(Found::File(identity)) => self.tracking.look(&path, identity, Instant::now()),
-                    Some(Found::Other(_)) | None => drop(self.tracking.remove(&path)),
-                }
-            }
-            self.give_up();
-        }
-        if now >= self.next_look {
-            self.next_look = Instant::now() + self.between_looks();
-        }
-        Ok(())
-    }
-
-    /// Reads the drop through.
-    fn scan(&mut self) -> anyhow::Result<()> {
-        let start = Instant::now();
-        let scan = self.walk.scan();
-        for (path, error) in &scan.problems {
-            tracing::warn!("{}: {error}", self.walk.root().join(path).display());
-            if self.mode.once {
-                self.status = self.status.max(Status::Unreadable);
-            }
-        }
-        self.hints.follow(self.walk.root(), &scan.folders);
-        let present: HashSet<_> = scan.files.iter().map(|(path, _)| path.as_path()).collect();
-        self.tracking.keep(&present);
-        let now = Instant::now();
-        for (path, found) in &scan.files {
-            match found {
-                Found::Other(what) => {
-                    if !self.record.is_done(path, &Identity::default())? {
-                        self.record.ignored(path, &Identity::default(), &format!("it is {what}"))?;
-                    }
-                }
-                Found::File(identity) if self.tracking.contains(path) => {
-                    self.tracking.look(path, *identity, now);
-                }
-                Found::File(identity) if self.record.is_done(path, identity)? => {}
-                Found::File(identity) => {
-                    let is_mesh = has_mesh_extension(path.file_name().unwrap_or_default());
-                    let announced = is_mesh || self.walk.root().join(path).is_dir();
-                    if announced {
-                        self.record.detected(path, identity)?;
-                    }
-                    self.tracking.add(path.clone(), *identity, now, announced);
-                }
-            }
-        }
-        self.record.scanned(scan.files.len());
-        let end = Instant::now();
-        if self.scanned.is_none() {
-            self.service.ready();
-        }
-        self.telemetry.scanned(&scan, end - start);
-        self.scanned = Some((end, end - start));
-        self.next_scan = end + self.config.watch.scan.0;
-        self.tell();
-        Ok(())
-    }
-
-    /// With `--once` a file that is written for ever must not keep us for ever.
-    fn give_up(&mut self) {
-        if self.mode.once {
-            for path in self.tracking.give_up(Instant::now(), self.config.watch.patience.0) {
-                let path = self.walk.root().join(path);
-                eprintln!("meshgauge: {}: it is still being written; left for the next run", path.display());
-                self.status = self.status.max(Status::Unreadable);
-            }
-        }
-    }
-
-    /// Hands files to free workers.
+    /// Hands files to workers.
     fn claim(&mut self) -> anyhow::Result<()> {
-        while self.tracking.running() < self.config.worker.count {
-            let Some((path, identity, announced)) = self.tracking.next() else { break };
-            self.record.claimed(&path, &identity, announced)?;
-            self.pool.give(Job { path, identity })?;
+        let most = (self.config.worker.count + self.stuck()).min(MOST_SEATS);
+        while self.degraded.is_none() && self.tracking.running() < most {
+            let Some(next) = self.tracking.next() else { break };
+            let claimed = self.record.claimed(&next.path, &next.identity, next.announced);
+            if self.bear(claimed)?.is_none() {
+                break;
+            }
+            let config = Arc::clone(&self.worker_config);
+            let job = Job { path: next.path.clone(), identity: next.identity, config };
+            self.pool.give(job, self.tracking.running())?;
+            self.tracking.run(&next);
         }
         Ok(())
     }
 
-    /// Puts down what became of a file.
-    fn finish(&mut self, outcome: Outcome) -> anyhow::Result<()> {
-        let Outcome { path, identity, result, time } = outcome;
-        let announced = self.tracking.is_announced(&path);
-        match result {
-            Scored::Scored(summary) => {
-                if !announced {
-                    self.record.announced(&path, &identity)?;
-                }
-                self.record.scored(&path, &identity, &summary, time)?;
-                self.status = self.status.max(Status::of_verdict(&summary.verdict));
-                self.scored += 1;
-                self.tracking.remove(&path);
-            }
-            Scored::Failed(failure) if !announced && is_no_mesh(&failure) => {
-                let reason = "it has neither the extension nor the content of a mesh";
-                self.record.ignored(&path, &identity, reason)?;
-                self.tracking.remove(&path);
-            }
-            Scored::Failed(failure) => {
-                if !announced {
-                    self.record.announced(&path, &identity)?;
-                }
-                self.fail(path, &identity, &failure)?;
-            }
-            Scored::Changed => self.start_over(path, &identity, announced)?,
-            Scored::Gone => {
-                self.record.gone(&path, &identity, announced)?;
-                self.tracking.remove(&path);
-            }
-            // Its claim stands in the ledger; the next start takes it up.
-            Scored::Abandoned => drop(self.tracking.remove(&path)),
+    /// How many workers have a file on a mount that hangs, and are none to reckon with.
+    fn stuck(&self) -> usize {
+        let hanging: Vec<_> =
+            self.scanners.mounts().values().filter(|mount| mount.hangs()).map(|mount| mount.id).collect();
+        if hanging.is_empty() {
+            return 0;
         }
+        let running = self.tracking.files().filter(|(_, file)| matches!(file.state, State::Running));
+        running.filter(|(_, file)| hanging.contains(&file.mount)).count()
+    }
+
+    /// Lets an error that may pass pass: the daemon goes on without claiming anything, until there is room again. A run
+    /// that is to end cannot wait.
+    pub(super) fn bear<T>(&mut self, result: anyhow::Result<T>) -> anyhow::Result<Option<T>> {
+        let error = match result {
+            Ok(value) => return Ok(Some(value)),
+            Err(error) if self.mode.once || !degraded::may_pass(&error) => return Err(error),
+            Err(error) => error,
+        };
+        match &mut self.degraded {
+            Some(degraded) => degraded.again(&error),
+            None => {
+                tracing::error!("no mesh is claimed until this passes: {error:#}");
+                self.degraded = Some(Degraded::new(&error));
+                self.telemetry.degraded("storage", Some(format!("nothing is claimed: {error:#}")));
+                self.tell();
+            }
+        }
+        Ok(None)
+    }
+
+    /// Finds out whether there is room again, and does what could not be done.
+    fn recover(&mut self) -> anyhow::Result<()> {
+        if self.degraded.as_ref().is_none_or(|degraded| Instant::now() < degraded.next_try) {
+            return Ok(());
+        }
+        let room = self.record.find_room();
+        if self.bear(room)?.is_none() {
+            return Ok(());
+        }
+        let Some(degraded) = self.degraded.take() else { return Ok(()) };
+        self.telemetry.degraded("storage", None);
+        let resumed = Event::warn("daemon.resumed")
+            .with("reason", degraded.reason.as_str())
+            .with("seconds", degraded.since.elapsed().as_secs_f64());
+        let told = self.record.event(resumed);
+        self.bear(told)?;
+        self.put_down()?;
+        // What was come upon meanwhile was not put down.
+        let now = Instant::now();
+        self.scanners.each().for_each(|mount| mount.next_scan = now);
         self.tell();
-        Ok(())
-    }
-
-    fn fail(&mut self, path: PathBuf, identity: &Identity, failure: &Failure) -> anyhow::Result<()> {
-        self.record.failed(&path, identity, failure)?;
-        self.status = self.status.max(failure.status());
-        self.failed += 1;
-        if failure.kind.is_resource() && !self.mode.once {
-            let retry = Instant::now() + self.config.worker.retry.0;
-            self.tracking.postpone(&path, *identity, retry);
-        } else {
-            self.tracking.remove(&path);
-        }
-        Ok(())
-    }
-
-    /// The file changed while it was read.
-    fn start_over(&mut self, path: PathBuf, identity: &Identity, announced: bool) -> anyhow::Result<()> {
-        self.record.changed(&path, identity, announced)?;
-        match self.walk.look(&path) {
-            Some(Found::File(now)) => self.tracking.unsettle(&path, now, Instant::now()),
-            Some(Found::Other(_)) | None => drop(self.tracking.remove(&path)),
-        }
         Ok(())
     }
 
@@ -288,15 +253,18 @@ impl Watching {
     fn drain(&mut self, stop: &Receiver<&'static str>) -> anyhow::Result<()> {
         let mut deadline = Instant::now() + self.config.watch.drain.0;
         let mut abandoned = false;
-        while self.tracking.running() > 0 {
+        self.put_down()?;
+        // What cannot be put down for want of room is scored again after the next start.
+        while self.tracking.running() > self.pending.len() {
             let left = deadline.saturating_duration_since(Instant::now());
             let left = left.min(self.telemetry.longest_round());
             let round = self.service.longest_round().map_or(left, |longest| left.min(longest));
-            self.service.alive();
-            self.telemetry.turned(&self.tracking);
+            self.turned();
             select! {
-                recv(self.pool.outcomes()) -> outcome => self.finish(outcome?)?,
+                recv(self.pool.outcomes()) -> outcome => self.take(outcome?)?,
                 recv(stop) -> _ => deadline = Instant::now(),
+                // The threads that look at the drop are waited for by nobody.
+                recv(self.scanners.reports()) -> _ => {}
                 default(round) => {}
             }
             if Instant::now() >= deadline {
@@ -310,16 +278,33 @@ impl Watching {
         Ok(())
     }
 
-    fn tell(&self) {
+    /// Tells whoever watches us that the loop turned.
+    fn turned(&mut self) {
+        self.service.alive();
+        self.telemetry.mounts(self.scanners.mounts());
+        self.telemetry.turned(&self.tracking);
+    }
+
+    /// Tells the service manager what is going on.
+    pub(super) fn tell(&self) {
         let waiting = self.tracking.len() - self.tracking.running();
         let running = self.tracking.running();
         let (scored, failed) = (self.scored, self.failed);
-        self.service
-            .status(&format!("{running} running, {waiting} waiting, {scored} scored, {failed} failed"));
+        let counts = format!("{running} running, {waiting} waiting, {scored} scored, {failed} failed");
+        match &self.degraded {
+            Some(degraded) => self.service.status(&format!("{}; {counts}", degraded.reason)),
+            None => self.service.status(&counts),
+        }
     }
 }
 
-/// Whether a failure means that the file is no mesh, if its name says nothing.
-fn is_no_mesh(failure: &Failure) -> bool {
-    matches!(failure.kind, FailureKind::UnknownFormat | FailureKind::Empty)
+/// How the drop is looked at.
+pub(super) fn rules(config: &Config, places: &Places) -> Rules {
+    let mut walk = Walk::new(&places.drop, &config.watch);
+    for ours in
+        [&places.results, &places.state, &places.log, &config.score.scratch, &config.telemetry.metrics_file]
+    {
+        walk.exclude(ours);
+    }
+    Rules { walk, producer: Producer::new(&config.watch) }
 }

@@ -26,7 +26,7 @@ pub use history::Entry;
 pub use id::Id;
 pub use lookup::Known;
 pub use recovery::{LogMark, Logged};
-pub use versions::{Failed, Stage};
+pub use versions::{Failed, Stage, Tries};
 
 /// The database's file name in the state folder.
 pub const FILE: &str = "state.db";

@@ -33,6 +33,26 @@ pub struct Failed<'t> {
     pub kind: &'t str,
     /// In words.
     pub reason: &'t str,
+    /// Whether the worker ended abnormally.
+    pub abnormal: bool,
+}
+
+/// A version that a worker is about to get.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Claim {
+    /// How often that is.
+    pub attempt: u32,
+    /// Whether it is because an earlier attempt failed.
+    pub again: bool,
+}
+
+/// What was tried with a version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tries {
+    /// How often a worker got it.
+    pub attempts: u32,
+    /// How often that worker ended abnormally.
+    pub abnormal: u32,
 }
 
 /// All stages.
@@ -84,16 +104,30 @@ impl State {
     }
 
     /// Puts down that a worker is about to get the version. Versions that came to nothing before are forgotten.
-    pub fn claim(&self, path: &Path, identity: &Identity) -> anyhow::Result<()> {
+    pub fn claim(&self, path: &Path, identity: &Identity) -> anyhow::Result<Claim> {
         let (mesh, id) = (self.mesh(path)?, Id::of(path, identity).to_string());
         let forget =
             "DELETE FROM version WHERE mesh = ?1 AND id <> ?2 AND stage IN ('dropped', 'claimed', 'waiting')";
         self.connection.prepare_cached(forget)?.execute(params![mesh, id])?;
         self.insert(mesh, &id, identity, Stage::Claimed)?;
+        let query = "SELECT attempts, stage = 'waiting' FROM version WHERE id = ?1";
+        let mut statement = self.connection.prepare_cached(query)?;
+        let (attempts, again): (u32, bool) =
+            statement.query_row([&id], |row| Ok((row.get(0)?, row.get(1)?)))?;
         let update =
             "UPDATE version SET stage = 'claimed', attempts = attempts + 1, claimed = ?2 WHERE id = ?1";
         self.connection.prepare_cached(update)?.execute(params![id, now()])?;
-        Ok(())
+        Ok(Claim { attempt: attempts.saturating_add(1), again })
+    }
+
+    /// What was tried with the version.
+    pub fn tries(&self, id: Id) -> anyhow::Result<Tries> {
+        let query = "SELECT attempts, abnormal FROM version WHERE id = ?1";
+        let tries = self
+            .connection
+            .prepare_cached(query)?
+            .query_row([id.to_string()], |row| Ok(Tries { attempts: row.get(0)?, abnormal: row.get(1)? }));
+        Ok(tries.optional()?.unwrap_or_default())
     }
 
     fn insert(&self, mesh: i64, id: &str, identity: &Identity, stage: Stage) -> anyhow::Result<()> {
@@ -123,10 +157,13 @@ impl State {
 
     /// Puts down what became of a version.
     pub fn end(&self, id: Id, stage: Stage, failed: Option<Failed<'_>>) -> anyhow::Result<()> {
-        let update = "UPDATE version SET stage = ?2, ended = ?3, kind = ?4, reason = ?5 WHERE id = ?1";
+        let update =
+            "UPDATE version SET stage = ?2, ended = ?3, kind = ?4, reason = ?5, abnormal = abnormal + ?6
+                      WHERE id = ?1";
         let (kind, reason) = (failed.map(|f| f.kind), failed.map(|f| f.reason));
+        let abnormal = failed.is_some_and(|failed| failed.abnormal);
         let mut statement = self.connection.prepare_cached(update)?;
-        statement.execute(params![id.to_string(), stage.name(), now(), kind, reason])?;
+        statement.execute(params![id.to_string(), stage.name(), now(), kind, reason, abnormal])?;
         Ok(())
     }
 
@@ -166,9 +203,27 @@ mod tests {
         assert_eq!(Id::of(mesh, &another_mount), id(1));
         assert!(!state.is_done(id(2)).expect("read"));
         state.claim(mesh, &identity(2)).expect("claimed");
-        let failed = Failed { kind: "malformed", reason: "expected a number" };
+        let failed = Failed { kind: "malformed", reason: "expected a number", abnormal: false };
         state.end(id(2), Stage::Failed, Some(failed)).expect("ended");
         assert!(state.is_done(id(1)).expect("read") && state.is_done(id(2)).expect("read"));
+    }
+
+    #[test]
+    fn attempts_and_abnormal_ends_are_counted_over_restarts() {
+        let (mut state, folder) = open();
+        let (mesh, identity) = (Path::new("pit.inp"), identity(1));
+        let id = Id::of(mesh, &identity);
+        for attempt in 1..4 {
+            let claim = state.claim(mesh, &identity).expect("claimed");
+            assert_eq!(claim, Claim { attempt, again: attempt > 1 });
+            let died = Failed { kind: "worker_died", reason: "SIGKILL", abnormal: true };
+            state.end(id, Stage::Waiting, Some(died)).expect("ended");
+            drop(state);
+            state = State::open(folder.path()).expect("opened again");
+            let tries = Tries { attempts: attempt, abnormal: attempt };
+            assert_eq!(state.tries(id).expect("read"), tries);
+            assert!(!state.is_done(id).expect("read"));
+        }
     }
 
     #[test]

@@ -58,6 +58,8 @@ pub enum Cause {
     Queued,
     /// It is to be tried again.
     Postponed,
+    /// Its producer has not said that it is whole.
+    Awaiting,
     /// The daemon has not come across it.
     NotSeen,
 }
@@ -66,7 +68,7 @@ impl Cause {
     /// Whether the file has a result or will have one by itself.
     pub fn is_pending(self) -> bool {
         use Cause::*;
-        matches!(self, Running | Settling | Queued | Postponed | NotSeen)
+        matches!(self, Running | Settling | Queued | Postponed | Awaiting | NotSeen)
     }
 }
 
@@ -149,7 +151,7 @@ fn by_content(status: &Status, drop: &Path, mesh: &Path, state: &Path) -> anyhow
             _ => (Cause::Unreadable, format!("it cannot be looked at: {error}")),
         });
     }
-    let identity = match Walk::new(drop, &status.config.watch).look(mesh) {
+    let identity = match Walk::new(drop, &status.config.watch).look(mesh, true) {
         Some(Found::File(identity)) => identity,
         Some(Found::Other(what)) => return Ok((Cause::NotAFile, format!("it is {what}"))),
         None => return Ok((Cause::Absent, "it went away just now".into())),
@@ -165,7 +167,7 @@ fn by_content(status: &Status, drop: &Path, mesh: &Path, state: &Path) -> anyhow
         return Ok(found);
     }
     let queue = &status.queue;
-    if queue.settling + queue.queued + queue.postponed > MOST_WAITING as u64 {
+    if queue.settling + queue.queued + queue.postponed + queue.awaiting > MOST_WAITING as u64 {
         let words = format!("it waits behind the first {MOST_WAITING}: {} are queued", queue.queued);
         return Ok((Cause::Queued, words));
     }
@@ -224,7 +226,14 @@ fn in_hand(status: &Status, mesh: &Path) -> Option<(Cause, String)> {
         ),
         Waits::Postponed(more) => (
             Cause::Postponed,
-            format!("it failed for want of disk or memory and is tried again in {more:.0} s"),
+            format!("it failed for a reason that may pass and is tried again in {more:.0} s"),
+        ),
+        Waits::Word => (
+            Cause::Awaiting,
+            format!(
+                "no file beside it says that it is whole ({})",
+                status.config.watch.sidecars.iter().map(|s| format!("*{s}")).collect::<Vec<_>>().join(", ")
+            ),
         ),
     })
 }

@@ -100,8 +100,14 @@ pub struct Watched {
 pub struct Mount {
     /// The first folder on it.
     pub path: PathText,
-    /// Its kind: `local`, or the name of a network file system.
+    /// The kernel's name of its type.
     pub kind: String,
+    /// Whether it counts as a network file system, which is scanned and gives no events.
+    #[serde(default)]
+    pub network: bool,
+    /// For how long it has not answered, where that is too long.
+    #[serde(default)]
+    pub hangs_seconds: Option<f64>,
 }
 
 /// Where results go.
@@ -122,6 +128,9 @@ pub struct Queue {
     pub queued: u64,
     /// Those that wait for another try.
     pub postponed: u64,
+    /// Those that wait for their producer's word.
+    #[serde(default)]
+    pub awaiting: u64,
     /// Those that a worker has.
     pub running: u64,
     /// How long the oldest of them has been known, in seconds.
@@ -170,6 +179,8 @@ pub enum Waits {
     Queued(u64),
     /// Another try, in so many seconds.
     Postponed(f64),
+    /// Its producer's word that it is whole.
+    Word,
 }
 
 /// How fast it has been of late.

@@ -77,7 +77,10 @@ fn head(out: &mut String, status: &Status, health: Health, age: Option<f64>) {
 fn drop_folder(out: &mut String, watched: &Watched) {
     let _ = writeln!(out, "drop     {}", shown(&watched.drop));
     for mount in &watched.mounts {
-        let _ = writeln!(out, "  mount  {} ({})", shown(&mount.path), mount.kind);
+        let hangs =
+            mount.hangs_seconds.map(|s| format!(", has not answered for {s:.0} s")).unwrap_or_default();
+        let how = if mount.network { "scanned" } else { "events and scans" };
+        let _ = writeln!(out, "  mount  {} ({}, {how}{hangs})", shown(&mount.path), mount.kind);
     }
     match &watched.scanned {
         Some(last) => {

@@ -11,15 +11,15 @@ mod metrics;
 mod report;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::Places;
+use super::scanners::Mount;
 use super::tracking::Tracking;
 use super::work::Work;
 use crate::config::Config;
-use crate::folder::Scan;
 use crate::publish::{replace, sweep};
 use crate::status::{self, Watched};
 
@@ -61,7 +61,7 @@ impl Telemetry {
             work: Work::default(),
             process: status::Process::this(),
             started: report::timestamp(),
-            watched: report::watched(&places.drop, &Scan::default(), None),
+            watched: report::watched(&places.drop, &BTreeMap::new(), None),
             degraded: BTreeMap::new(),
             ended: None,
             next: Instant::now(),
@@ -86,7 +86,6 @@ impl Telemetry {
     }
 
     /// The configuration that is in force from now on.
-    #[expect(dead_code, reason = "called where the configuration is read anew")]
     pub fn reconfigured(&mut self, config: &Config) {
         self.config = config.clone();
     }
@@ -100,18 +99,36 @@ impl Telemetry {
         }
     }
 
-    /// The drop was read through.
-    pub fn scanned(&mut self, scan: &Scan, took: Duration) {
-        let (files, folders, problems) = (scan.files.len(), scan.folders.len(), scan.problems.len());
-        self.metrics.drop_files.set(files as i64);
-        self.metrics.drop_folders.set(folders as i64);
-        self.metrics.drop_problems.set(problems as i64);
+    /// A file system of the drop was read through.
+    pub fn scanned(&mut self, mounts: &BTreeMap<PathBuf, Mount>, took: Duration) {
+        self.metrics.drop_files.set(mounts.values().map(|mount| mount.files as i64).sum());
+        self.metrics.drop_folders.set(mounts.values().map(|mount| mount.folders.len() as i64).sum());
+        self.metrics.drop_problems.set(mounts.values().map(|mount| mount.problem_count as i64).sum());
         self.metrics.scans.inc();
         self.metrics.scan_seconds.set(took.as_secs_f64());
         self.metrics.scan_time.set(seconds_since_epoch());
-        let root = scan.problems.iter().find(|(path, _)| path.as_os_str().is_empty());
-        self.degraded("drop", root.map(|(_, error)| format!("the drop-folder cannot be read: {error}")));
-        self.watched = report::watched(&self.places.drop, scan, Some((took, self.metrics.scans.get())));
+        let root = mounts.get(Path::new("")).and_then(|mount| mount.root_problem.clone());
+        self.degraded("drop", root.map(|problem| format!("the drop-folder cannot be read: {problem}")));
+        let made = Some((took, self.metrics.scans.get()));
+        self.watched = report::watched(&self.places.drop, mounts, made);
+    }
+
+    /// Looks which file systems answer.
+    pub fn mounts(&mut self, mounts: &BTreeMap<PathBuf, Mount>) {
+        let silent = mounts.iter().find_map(|(at, mount)| Some((at, mount.busy.filter(|_| mount.hangs())?)));
+        let words = silent.map(|(at, since)| {
+            let at = self.places.drop.join(at);
+            let seconds = since.elapsed().as_secs();
+            format!("{}: the file system has not answered for {seconds} s", at.display())
+        });
+        if words.is_some() || self.degraded.contains_key("mount") {
+            let made = (self.watched.scans > 0).then_some(self.watched.scans);
+            let took = Duration::try_from_secs_f64(self.watched.scan_seconds).unwrap_or_default();
+            let scanned = self.watched.scanned.clone();
+            self.watched = report::watched(&self.places.drop, mounts, made.map(|scans| (took, scans)));
+            self.watched.scanned = scanned;
+        }
+        self.degraded("mount", words);
     }
 
     /// The loop turned; tells what is to be told every few seconds.
@@ -158,6 +175,7 @@ impl Telemetry {
             ("settling", queue.settling),
             ("queued", queue.queued),
             ("postponed", queue.postponed),
+            ("awaiting", queue.awaiting),
             ("running", queue.running),
         ] {
             self.metrics.files.with_label_values(&[state]).set(count.cast_signed());

@@ -1,17 +1,16 @@
 //! The daemon's state as the status file has it.
 
-use std::collections::HashSet;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::Telemetry;
 use super::metrics::Metrics;
+use crate::daemon::scanners::Mount as Scanned;
 use crate::daemon::tracking::Tracking;
 use crate::daemon::work::InWork;
-use crate::file_system;
-use crate::folder::Scan;
 use crate::status::{
     MOST_WAITING, Mount, Places, Process, Queue, Running, SCHEMA, Status, Waiting, Waits, Watched,
 };
@@ -59,23 +58,21 @@ pub fn timestamp() -> String {
     humantime::format_rfc3339_millis(SystemTime::now()).to_string()
 }
 
-/// What a scan says of the drop; how long it took and the how-manieth it was, unless none was made yet.
-pub fn watched(drop: &Path, scan: &Scan, made: Option<(Duration, u64)>) -> Watched {
-    let problem = |(path, error): &(std::path::PathBuf, std::io::Error)| {
-        format!("{}: {error}", drop.join(path).display())
+/// What is known of the drop from the scans of its file systems; how long the last took and the how-manieth it was,
+/// unless none was made yet.
+pub fn watched(drop: &Path, mounts: &BTreeMap<PathBuf, Scanned>, made: Option<(Duration, u64)>) -> Watched {
+    let mount = |(at, mount): (&PathBuf, &Scanned)| Mount {
+        path: drop.join(at).as_path().into(),
+        kind: mount.kind.clone(),
+        network: mount.network,
+        hangs_seconds: mount.busy.filter(|_| mount.hangs()).map(|since| since.elapsed().as_secs_f64()),
     };
-    let mut devices = HashSet::new();
-    let first = scan.folders.iter().filter(|(_, (device, _))| devices.insert(*device));
-    let mounts = first.take(MOUNTS).map(|(path, _)| {
-        let path = drop.join(path);
-        Mount { kind: file_system::network(&path).unwrap_or("local").into(), path: path.as_path().into() }
-    });
     Watched {
         drop: drop.into(),
-        mounts: mounts.collect(),
-        files: scan.files.len() as u64,
-        folders: scan.folders.len() as u64,
-        problems: scan.problems.iter().take(PROBLEMS).map(problem).collect(),
+        mounts: mounts.iter().take(MOUNTS).map(mount).collect(),
+        files: mounts.values().map(|mount| mount.files as u64).sum(),
+        folders: mounts.values().map(|mount| mount.folders.len() as u64).sum(),
+        problems: mounts.values().flat_map(|mount| &mount.problems).take(PROBLEMS).cloned().collect(),
         scanned: made.map(|_| timestamp()),
         scan_seconds: made.map_or(0.0, |(took, _)| took.as_secs_f64()),
         scans: made.map_or(0, |(_, scans)| scans),
@@ -90,6 +87,7 @@ fn waiting(tracking: &Tracking, now: Instant) -> (Queue, Vec<Waiting>) {
             Waits::Settling(_) => queue.settling += 1,
             Waits::Queued(_) => queue.queued += 1,
             Waits::Postponed(_) => queue.postponed += 1,
+            Waits::Word => queue.awaiting += 1,
         }
         if listed.len() < MOST_WAITING {
             let seconds = now.duration_since(first).as_secs_f64();

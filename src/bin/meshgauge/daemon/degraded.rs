@@ -1,0 +1,79 @@
+//! A full disk is nobody's fault that a daemon could mend: it waits until there is room, and does then what it could
+//! not do before.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use rusqlite::ffi;
+
+/// How often we look whether there is room again.
+const BETWEEN_TRIES: Duration = Duration::from_secs(2);
+
+/// What the daemon waits for.
+#[derive(Debug)]
+pub struct Degraded {
+    /// In words.
+    pub reason: String,
+    /// Since when.
+    pub since: Instant,
+    /// When to try again.
+    pub next_try: Instant,
+}
+
+impl Degraded {
+    /// From now on.
+    pub fn new(error: &anyhow::Error) -> Self {
+        let now = Instant::now();
+        Self { reason: format!("{error:#}"), since: now, next_try: now + BETWEEN_TRIES }
+    }
+
+    /// It is not over.
+    pub fn again(&mut self, error: &anyhow::Error) {
+        self.reason = format!("{error:#}");
+        self.next_try = Instant::now() + BETWEEN_TRIES;
+    }
+}
+
+/// Whether an error is about a place that is full, or read-only, or held by somebody: all that may pass. A failed fsync
+/// is not among them: what it did not write may be lost whatever a second one says.
+pub fn may_pass(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let io = cause.downcast_ref::<io::Error>().is_some_and(|e| {
+            use io::ErrorKind::{QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+            matches!(e.kind(), StorageFull | QuotaExceeded | ReadOnlyFilesystem)
+        });
+        let database = cause.downcast_ref::<rusqlite::Error>().and_then(rusqlite::Error::sqlite_error);
+        io || database.is_some_and(|e| of_database(e.extended_code))
+    })
+}
+
+fn of_database(code: i32) -> bool {
+    const WRITES: [i32; 4] = [
+        ffi::SQLITE_IOERR_WRITE,
+        ffi::SQLITE_IOERR_TRUNCATE,
+        ffi::SQLITE_IOERR_SHMSIZE,
+        ffi::SQLITE_IOERR_SHMOPEN,
+    ];
+    WRITES.contains(&code)
+        || matches!(
+            code & 0xff,
+            ffi::SQLITE_FULL | ffi::SQLITE_READONLY | ffi::SQLITE_BUSY | ffi::SQLITE_CANTOPEN
+        )
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::Context;
+
+    use super::*;
+
+    #[test]
+    fn a_full_disk_passes_and_a_failed_fsync_does_not() {
+        let error = |number| Err::<(), _>(io::Error::from_raw_os_error(number)).context("log").unwrap_err();
+        // ENOSPC, EDQUOT, EROFS; EIO, ENOENT.
+        assert!([28, 122, 30].into_iter().all(|number| may_pass(&error(number))));
+        assert!(![5, 2].into_iter().any(|number| may_pass(&error(number))));
+        assert!(of_database(ffi::SQLITE_FULL) && of_database(ffi::SQLITE_READONLY_DIRECTORY));
+        assert!(!of_database(ffi::SQLITE_IOERR_FSYNC) && !of_database(ffi::SQLITE_CORRUPT));
+    }
+}
