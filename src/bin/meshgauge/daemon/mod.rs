@@ -11,6 +11,7 @@ mod finishing;
 mod hints;
 mod log;
 mod looking;
+mod mount;
 mod mounts;
 mod pool;
 mod process;
@@ -120,9 +121,11 @@ pub fn run(
         return Err(Usage(format!("{drop}: expected a folder that meshes are dropped into")).into());
     }
     let requests = signals::requests().context("signals")?;
+    let mut telemetry = None;
     loop {
-        match start(&config, &places, mode) {
-            Ok((lock, record, telemetry)) => {
+        match start(&config, &places, mode, &mut telemetry) {
+            Ok((lock, record)) => {
+                let telemetry = telemetry.context("telemetry starts before the rest")?;
                 let watching = Watching::new(config, places, mode, record, telemetry, read_config);
                 let status = watching.run(&requests)?;
                 drop(lock);
@@ -140,12 +143,21 @@ pub fn run(
 }
 
 /// Takes over from an earlier daemon.
-fn start(config: &Config, places: &Places, mode: Mode) -> anyhow::Result<(File, Record, Telemetry)> {
+fn start(
+    config: &Config,
+    places: &Places,
+    mode: Mode,
+    telemetry: &mut Option<Telemetry>,
+) -> anyhow::Result<(File, Record)> {
     record::make_folders([&places.results, &places.state])?;
     let lock = lock(&places.state)?;
+    // It listens: a start that is made again must not do that twice.
+    let telemetry = match telemetry {
+        Some(telemetry) => telemetry,
+        None => telemetry.insert(Telemetry::start(config, places)?),
+    };
     let (mut log, torn) = Log::open(&places.log).with_context(|| places.log.display().to_string())?;
     let state = State::open(&places.state)?;
-    let telemetry = Telemetry::start(config, places)?;
     log.hear_with(telemetry.heard());
     let mut record = Record::new(log, state, places, mode.quiet)?;
     if config.baseline.compare {
@@ -159,7 +171,7 @@ fn start(config: &Config, places: &Places, mode: Mode) -> anyhow::Result<(File, 
         record.event(Event::warn("log.repaired").with("bytes", torn))?;
     }
     record.event(started(places, mode))?;
-    Ok((lock, record, telemetry))
+    Ok((lock, record))
 }
 
 /// Makes sure that no other daemon works with the same state; holds as long as the file is open.

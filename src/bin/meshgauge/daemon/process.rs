@@ -49,6 +49,8 @@ impl Process {
             .arg("worker")
             .arg("--parent")
             .arg(std::process::id().to_string())
+            // Without memory a backtrace waits for ever for a lock that it holds itself.
+            .env("RUST_BACKTRACE", "0")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::Places;
-use super::scanners::Mount;
+use super::mount::Mount;
 use super::tracking::Tracking;
 use super::work::Work;
 use crate::config::Config;

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use super::Telemetry;
 use super::metrics::Metrics;
-use crate::daemon::scanners::Mount as Scanned;
+use crate::daemon::mount::Mount as Scanned;
 use crate::daemon::tracking::Tracking;
 use crate::daemon::work::InWork;
 use crate::status::{
