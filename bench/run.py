@@ -1,15 +1,18 @@
 """Times meshgauge and its peers as whole processes, from a file on disk to statistics, in one interleaved run.
 
-    python bench/run.py [--work DIR] [--program PATH] [--rounds N]
+    python bench/run.py [--work DIR] [--program PATH] [--rounds N] [--check]
 
 Makes the meshes with Gmsh once and keeps them in DIR. All contenders run by turns, so that whatever else the machine
-does meets all of them. Rewrites the table in bench/README.md.
+does meets all of them, and ratios are taken round by round. Rewrites the table in bench/README.md, writes every sample
+to DIR/samples.json and, with Matplotlib, a plot to DIR/wall.svg. With --check it writes nothing, and fails where a ratio
+is beyond its bound.
 
 The measuring process imports no package: a child's peak memory is never told as less than its parent's.
 """
 import argparse
 import importlib.metadata
 import importlib.util
+import json
 import os
 import platform
 import statistics
@@ -23,6 +26,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 README = HERE / "README.md"
 MARKERS = ("<!-- begin table -->", "<!-- end table -->")
+# How many times faster than a peer's process meshgauge with one thread must be: far less than it is, as machines differ.
+BOUNDS = {("box.msh", "gmsh"): 2.0, ("box.vtu", "vtk"): 1.2, ("box.inp", "meshio"): 6.0}
 TITLES = {"box.msh": "MSH 4.1 binary", "box.inp": "Abaqus", "box.vtk": "VTK legacy binary", "box.vtu": "VTU appended raw"}
 
 
@@ -158,6 +163,49 @@ def contenders(program, folder):
     return found
 
 
+def ratios(run, base):
+    """Wall of a contender over that of another, round by round: median, smallest, largest."""
+    found = [mine / theirs for mine, theirs in zip(run.wall, base.wall)]
+    return statistics.median(found), min(found), max(found)
+
+
+def check(runs):
+    """Fails where meshgauge with one thread is not as many times faster than a peer as it must be."""
+    slow = []
+    for (file, peer), bound in BOUNDS.items():
+        own = [run for run in runs if run.file == file]
+        for run in own:
+            if run.name.startswith(peer):
+                ratio, least, most = ratios(run, own[0])
+                print(f"{file}: {run.name} takes {ratio:.1f} times as long ({least:.1f} to {most:.1f}); at least {bound}")
+                slow += [run.name] * (ratio < bound)
+    if slow:
+        raise SystemExit(f"too slow beside {', '.join(slow)}")
+
+
+def keep_samples(runs, folder):
+    rows = [{"file": run.file, "contender": run.name, "wall": run.wall, "cpu": run.cpu, "peak": run.peak} for run in runs]
+    (folder / "samples.json").write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    for run in runs:
+        print(f"{run.file} {run.name}: " + " ".join(f"{wall:.3f}" for wall in run.wall))
+
+
+def plot(folder):
+    """Every sample of wall time, by file and contender."""
+    import matplotlib
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+    rows = json.loads((folder / "samples.json").read_text(encoding="utf-8"))
+    figure, axes = plt.subplots(figsize=(8, 0.4 * len(rows) + 1), layout="constrained")
+    for place, row in enumerate(rows):
+        axes.plot(row["wall"], [place] * len(row["wall"]), "|", color="tab:blue" if "meshgauge" in row["contender"] else "tab:gray")
+    axes.set_yticks(range(len(rows)), [f"{row['contender']}, {row['file']}" for row in rows], fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xscale("log")
+    axes.set_xlabel("wall of the whole process, s")
+    figure.savefig(folder / "wall.svg")
+
+
 def machine():
     lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     cpu = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
@@ -173,7 +221,7 @@ def table(runs, folder, rounds, program, load):
         f"Load average before the run {load[0]:.1f}, after it {os.getloadavg()[0]:.1f}"
         + ("; other work shared the machine." if load[0] > 0.5 else "."),
         "",
-        "| file | MB | contender | does | wall median, s | wall min, s | CPU median, s | peak, MB | wall ratio | peak ratio |",
+        "| file | MB | contender | does | wall median, s | wall min, s | CPU median, s | peak, MB | wall ratio (range) | peak ratio |",
         "|---|---:|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     for file, title in TITLES.items():
@@ -182,14 +230,14 @@ def table(runs, folder, rounds, program, load):
         for run in own:
             size = (folder / file).stat().st_size / 1e6
             wall, cpu = statistics.median(run.wall), statistics.median(run.cpu)
+            ratio, least, most = ratios(run, base)
             lines.append(
                 f"| {title} | {size:.0f} | {run.name} | {run.work} | {wall:.3f} | {min(run.wall):.3f} | {cpu:.3f} | "
-                f"{run.peak / 1e6:.0f} | {wall / statistics.median(base.wall):.2f} | {run.peak / base.peak:.2f} |")
+                f"{run.peak / 1e6:.0f} | {ratio:.2f} ({least:.2f}-{most:.2f}) | {run.peak / base.peak:.2f} |")
     return "\n".join(lines)
 
 
 def elements(program, folder):
-    import json
     command = [program, "score", "--format", "json", "--no-progress", str(folder / "box.msh")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     return json.loads(done.stdout)["elements"]["count"]
@@ -206,6 +254,8 @@ def main():
     parser.add_argument("--work", type=Path, default=HERE / "work", help="where the meshes are kept")
     parser.add_argument("--program", default=str(HERE.parent / "target" / "release" / "meshgauge"))
     parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--check", action="store_true", help="only hold three ratios against their bounds")
+    parser.add_argument("--plot", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--peer", nargs=2, help=argparse.SUPPRESS)
     parser.add_argument("--make-inputs", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -213,16 +263,26 @@ def main():
         return PEERS[arguments.peer[0]](arguments.peer[1])
     if arguments.make_inputs:
         return make_inputs(arguments.make_inputs)
+    if arguments.plot:
+        return plot(arguments.plot)
     folder = arguments.work
     folder.mkdir(parents=True, exist_ok=True)
     if not all((folder / file).exists() for file in TITLES):
         subprocess.run([sys.executable, __file__, "--make-inputs", str(folder)], check=True)
     runs, load = contenders(arguments.program, folder), os.getloadavg()
+    if arguments.check:
+        wanted = [file for file, _ in BOUNDS]
+        runs = [run for run in runs if run.file in wanted and "2 threads" not in run.name]
     for number in range(arguments.rounds + 1):
         start = number % len(runs)
         for run in runs[start:] + runs[:start]:
             run.run(counts=number > 0)
         print(f"round {number} of {arguments.rounds}", file=sys.stderr)
+    if arguments.check:
+        return check(runs)
+    keep_samples(runs, folder)
+    if importlib.util.find_spec("matplotlib"):
+        subprocess.run([sys.executable, __file__, "--plot", str(folder)], check=True)
     text = table(runs, folder, arguments.rounds, arguments.program, load)
     print(text)
     rewrite(text)

@@ -32,6 +32,7 @@ mod nastran;
 mod netcdf;
 mod netgen;
 mod openfoam;
+mod plain;
 mod plan;
 #[cfg(test)]
 pub(crate) mod reading;

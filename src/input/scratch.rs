@@ -27,9 +27,14 @@ impl Scratch {
 
     /// A new, unlinked file.
     pub fn file(&self) -> Result<ScratchFile> {
+        self.file_with(1 << 20)
+    }
+
+    /// A new, unlinked file that is written in steps of `buffer` bytes, for those who write many at a time.
+    pub fn file_with(&self, buffer: usize) -> Result<ScratchFile> {
         let file = tempfile::tempfile_in(&self.folder).map_err(|e| self.error(e))?;
         let share = ScratchShare { scratch: self.clone(), bytes: 0 };
-        Ok(ScratchFile { out: BufWriter::with_capacity(1 << 20, file), share })
+        Ok(ScratchFile { out: BufWriter::with_capacity(buffer, file), share })
     }
 
     /// A new, unlinked file of `len` zero bytes, to be mapped and written in any order. The space is allocated at once:

@@ -121,6 +121,11 @@ impl Chunk {
         &self.labels
     }
 
+    /// The same, to be made rows of another table.
+    pub fn rows_mut(&mut self) -> &mut [u32] {
+        &mut self.rows
+    }
+
     /// The corners of all elements as rows of the node table, element by element.
     pub fn rows(&self) -> &[u32] {
         &self.rows

@@ -3,9 +3,10 @@
 
 use std::fs::File;
 use std::marker::PhantomData;
+use std::ops::Range;
 
 use bytemuck::Pod;
-use memmap2::MmapMut;
+use memmap2::{MmapMut, UncheckedAdvice};
 
 use crate::error::{Error, Result};
 use crate::input::{Budget, Scratch, ScratchFile, ScratchShare};
@@ -142,25 +143,18 @@ impl<T: Pod> Column<T> {
         }
     }
 
-    /// Asks the processor for rows that will be read soon.
-    #[inline(always)]
-    #[cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "prefetching takes a bare address"))]
-    pub fn prefetch(&self, rows: &[u32]) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let start = self.rows().as_ptr();
-            for row in rows {
-                let row = start.wrapping_add(*row as usize).cast::<i8>();
-                // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address. A row may lie in two lines.
-                unsafe {
-                    _mm_prefetch::<_MM_HINT_T0>(row);
-                    _mm_prefetch::<_MM_HINT_T0>(row.wrapping_add(size_of::<T>() - 1));
-                }
-            }
+    /// Gives back the memory of rows that were looked at, where they are in a scratch file. They are still there.
+    #[expect(
+        unsafe_code,
+        reason = "memmap2 calls giving pages back unchecked, as it would lose writes of a private map"
+    )]
+    pub fn release(&self, rows: Range<usize>) {
+        if let Store::Mapped { map, .. } = &self.store {
+            let end = (rows.end * size_of::<T>()).min(map.len());
+            let start = (rows.start * size_of::<T>()).min(end);
+            // SAFETY: the map is shared with its file: pages that are dropped come back from there with the same bytes.
+            let _ = unsafe { map.unchecked_advise_range(UncheckedAdvice::DontNeed, start, end - start) };
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = rows;
     }
 
     /// The rows, to be changed.
@@ -181,6 +175,27 @@ impl<T> Drop for Column<T> {
     fn drop(&mut self) {
         self.budget.give_back(self.taken);
     }
+}
+
+/// Asks the processor for points that will be read soon.
+#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "prefetching takes a bare address"))]
+pub fn prefetch(points: &[[f64; 3]], rows: &[u32]) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let start = points.as_ptr();
+        for row in rows {
+            let point = start.wrapping_add(*row as usize).cast::<i8>();
+            // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address. A point may lie in two lines.
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(point);
+                _mm_prefetch::<_MM_HINT_T0>(point.wrapping_add(size_of::<[f64; 3]>() - 1));
+            }
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (points, rows);
 }
 
 /// Rows are read in the order of the elements' corners, all over the column: with pages of 4 KiB each look would cost a

@@ -10,7 +10,7 @@ mod scored;
 mod shape;
 
 pub use chunk::{CHUNK, Chunk, Origin, Tag};
-pub use column::{Column, ColumnBuilder};
+pub use column::{Column, ColumnBuilder, prefetch};
 pub use element::{Class, ElementType, IN_ORDER};
 pub use frame::{Axis, Frame, System, three};
 pub use nodes::{Bounds, Nodes, NodesBuilder};

@@ -5,6 +5,7 @@
 //! their range, or 16 bytes a node where the range is sparse.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::column::{Column, ColumnBuilder};
@@ -255,10 +256,9 @@ impl Nodes {
         self.rows.rows()
     }
 
-    /// Asks the processor for rows of coordinates that will be read soon.
-    #[inline(always)]
-    pub fn prefetch(&self, rows: &[u32]) {
-        self.rows.prefetch(rows);
+    /// Gives back the memory of rows that were looked at, where they are in a scratch file. They are still there.
+    pub fn release(&self, rows: Range<usize>) {
+        self.rows.release(rows);
     }
 
     /// The row of the node with number `id`.

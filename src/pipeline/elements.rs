@@ -6,29 +6,89 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
+use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, select};
 
 use super::duplicates::{self, Fingerprints};
 use super::each::Each;
+use super::join::{Join, Local};
 use super::listing::Listing;
+use super::locality::locality;
 use super::measure::{Bins, Workspace, measure};
 use super::merge::{Merged, Message, merge};
 use super::{Options, Progress};
 use crate::error::Result;
 use crate::formats::{Chunks, ElementLayout, ElementSink, Piece};
+use crate::input::Input;
 use crate::mesh::{Chunk, Nodes, Regions, Shape};
 
 /// What all workers share.
 struct Shared<'a> {
     pieces: &'a [Piece<dyn ElementLayout>],
     nodes: &'a Nodes,
+    access: Access,
     next: AtomicU64,
     options: &'a Options,
     /// Where elements are tagged with their region and place.
     regions: Option<&'a Regions>,
     keeps_rows: bool,
     progress: &'a Progress,
+}
+
+/// How workers come by coordinates.
+enum Access {
+    /// By looking into the node table. Where that is in a scratch file, what was looked at is given back each time that so
+    /// many pieces are done.
+    Table { release_every: Option<u64> },
+    /// Each piece has a table of its own.
+    Joined(Join),
+}
+
+impl Access {
+    /// Chooses, by how near to each other the nodes are that pieces use.
+    fn choose(
+        pieces: &[Piece<dyn ElementLayout>],
+        nodes: &Nodes,
+        threads: usize,
+        keeps_rows: bool,
+        input: &Input,
+        options: &Options,
+    ) -> Result<Self> {
+        if !nodes.is_spilled() {
+            return Ok(Self::Table { release_every: None });
+        }
+        let memory = input.memory.left();
+        let found = locality(pieces, nodes, options);
+        // Who is told of single elements is told of their rows in the whole table.
+        if let Some(locality) = found
+            && locality.joined < locality.paged
+            && !keeps_rows
+        {
+            let started = Instant::now();
+            let join = Join::new(pieces, nodes, threads, memory, &input.scratch, options)?;
+            tracing::info!(
+                paged = format_args!("{:.0} bytes an element", locality.paged),
+                joined = format_args!("{:.0} bytes an element", locality.joined),
+                blocks = join.blocks(),
+                points = join.points(),
+                seconds = started.elapsed().as_secs_f64(),
+                "the node table is not in memory and its order is not that of the elements: joined"
+            );
+            return Ok(Self::Joined(join));
+        }
+        // The system maps the neighbours of a page along with it.
+        const NEIGHBOURS: f64 = 16.0;
+        let by_piece = found.map_or(0.0, |locality| NEIGHBOURS * locality.paged_by_piece);
+        let release_every = (memory as f64 / 2.0 / by_piece.max(1.0)).clamp(1.0, 1e6) as u64;
+        tracing::info!(
+            paged = format_args!("{:.0} bytes an element", found.map_or(0.0, |locality| locality.paged)),
+            joined = format_args!("{:.0} bytes an element", found.map_or(0.0, |locality| locality.joined)),
+            release_every,
+            "the node table is not in memory and its order is near that of the elements: mapped"
+        );
+        Ok(Self::Table { release_every: Some(release_every) })
+    }
 }
 
 /// One worker's ends of the channels.
@@ -50,9 +110,14 @@ pub(super) fn chunks_in_flight(threads: usize) -> usize {
 }
 
 /// Measures all elements.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what there is to measure, what is asked for, and where it goes"
+)]
 pub(super) fn measure_elements(
     pieces: &[Piece<dyn ElementLayout>],
     nodes: &Nodes,
+    input: &Input,
     options: &Options,
     listing: Option<Listing<'_>>,
     fingerprints: Option<&mut Fingerprints>,
@@ -60,6 +125,10 @@ pub(super) fn measure_elements(
     progress: &Progress,
 ) -> Result<(Merged, Bins)> {
     let threads = options.threads.max(1);
+    let keeps_rows = listing.is_some();
+    let regions = Each::of(options, keeps_rows).map(|_| regions);
+    let access =
+        Access::choose(pieces, nodes, threads, regions.is_some() || options.all_checks, input, options)?;
     let window = 4 * threads + 2;
     let (ticket_out, tickets) = bounded(window);
     let (full_out, full_in) = bounded(threads - 1);
@@ -71,10 +140,8 @@ pub(super) fn measure_elements(
     for _ in 0..chunks_in_flight(threads) {
         empty_out.send(Chunk::new()).expect("the channel has room for every chunk");
     }
-    let keeps_rows = listing.is_some();
-    let regions = Each::of(options, keeps_rows).map(|_| regions);
     let next = AtomicU64::new(0);
-    let shared = Shared { pieces, nodes, next, options, regions, keeps_rows, progress };
+    let shared = Shared { pieces, nodes, access, next, options, regions, keeps_rows, progress };
     let ends = Ends { tickets, full_in, full_out, empty_in, empty_out, results };
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads)
@@ -101,13 +168,15 @@ struct Worker<'a> {
     ends: Ends,
     work: Box<Workspace>,
     bins: Bins,
+    /// The table of the piece at hand, where pieces have their own.
+    local: Local,
 }
 
 impl<'a> Worker<'a> {
     fn new(shared: &'a Shared<'a>, ends: Ends) -> Self {
         let bins = Bins::new(shared.nodes.bounds().diagonal(), shared.options);
         let each = Each::of(shared.options, shared.keeps_rows);
-        Self { shared, ends, work: Workspace::new(shared.options.frame, each), bins }
+        Self { shared, ends, work: Workspace::new(shared.options.frame, each), bins, local: Local::default() }
     }
 
     /// Measures what others hand over and decodes pieces until there are none left.
@@ -124,11 +193,12 @@ impl<'a> Worker<'a> {
             }
         }
         // Others may still hand chunks over; the channel ends when the last of us has left this loop.
-        let Worker { ends, shared, mut work, mut bins } = self;
+        let Worker { ends, shared, mut work, mut bins, .. } = self;
         let Ends { full_in, full_out, empty_out, results, .. } = ends;
         drop(full_out);
         for chunk in full_in {
-            measure_and_send(&chunk, shared, &mut work, &mut bins, &results);
+            let table = shared.nodes.rows();
+            measure_and_send(&chunk, table, shared, &mut work, &mut bins, &results);
             let _ = empty_out.send(chunk);
         }
         bins
@@ -139,12 +209,23 @@ impl<'a> Worker<'a> {
         let number = self.shared.next.fetch_add(1, Ordering::Relaxed);
         let Some(piece) = self.shared.pieces.get(number as usize) else { return false };
         let (shared, results) = (self.shared, self.ends.results.clone());
+        if let Access::Joined(join) = &shared.access
+            && let Err(error) = join.read(number as usize, &mut self.local)
+        {
+            let _ = results.send(Message::Piece { number, done: Err(error) });
+            return false;
+        }
         let mut sink = ElementSink::new(shared.nodes, self, number, shared.options.allow_missing_nodes)
             .tagging(shared.regions);
         let done = piece.layout.decode(piece.span.clone(), &mut sink);
         let at = sink.at;
         let done = done.and_then(|()| sink.finish()).map_err(|error| piece.layout.source().place(error, at));
         let good = done.is_ok();
+        if let Access::Table { release_every: Some(every) } = shared.access
+            && number % every == 0
+        {
+            shared.nodes.release(0..shared.nodes.rows().len());
+        }
         if let Ok((ledger, _)) = &done {
             shared.progress.done(ledger.types.iter().map(|row| row.count).sum());
         }
@@ -154,7 +235,13 @@ impl<'a> Worker<'a> {
     }
 
     fn measure(&mut self, chunk: Chunk) {
-        measure_and_send(&chunk, self.shared, &mut self.work, &mut self.bins, &self.ends.results);
+        let nodes = self.shared.nodes;
+        let points = match &self.shared.access {
+            Access::Table { .. } => nodes.rows(),
+            Access::Joined(_) => self.local.points(),
+        };
+        let (work, bins) = (&mut self.work, &mut self.bins);
+        measure_and_send(&chunk, points, self.shared, work, bins, &self.ends.results);
         let _ = self.ends.empty_out.send(chunk);
     }
 }
@@ -164,7 +251,13 @@ impl Chunks for Worker<'_> {
         Ok(self.ends.empty_in.recv().expect("a worker holds the other end itself"))
     }
 
-    fn hand_on(&mut self, chunk: Chunk) -> Result<()> {
+    fn hand_on(&mut self, mut chunk: Chunk) -> Result<()> {
+        // Nobody else has this piece's table.
+        if let Access::Joined(_) = self.shared.access {
+            self.local.localise(chunk.rows_mut());
+            self.measure(chunk);
+            return Ok(());
+        }
         match self.ends.full_out.try_send(chunk) {
             Ok(()) => {}
             Err(TrySendError::Full(chunk) | TrySendError::Disconnected(chunk)) => self.measure(chunk),
@@ -175,12 +268,13 @@ impl Chunks for Worker<'_> {
 
 fn measure_and_send(
     chunk: &Chunk,
+    points: &[[f64; 3]],
     shared: &Shared<'_>,
     work: &mut Workspace,
     bins: &mut Bins,
     results: &Sender<Message>,
 ) {
-    let (found, rows) = measure(chunk, shared.nodes, work, bins);
+    let (found, rows) = measure(chunk, points, shared.nodes.is_planar(), work, bins);
     let prints = if shared.options.all_checks { duplicates::of_elements(chunk) } else { Vec::new() };
     let (origin, shape, found) = (chunk.origin(), chunk.shape(), Box::new(found));
     // A closed channel means that the merge stage has an error to report, which is the answer then.

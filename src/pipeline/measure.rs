@@ -10,7 +10,7 @@ use crate::measures::batch::{Wide, at_widest};
 use crate::measures::{
     self, Corner, Family, Geometry, LANES, Lanes, MOST_MEASURES, QuadrilateralFlaws, Subject,
 };
-use crate::mesh::{CHUNK, Chunk, Frame, Nodes, Origin, Shape};
+use crate::mesh::{CHUNK, Chunk, Frame, Origin, Shape, prefetch};
 use crate::statistics::{Distribution, MOST, Moments, Spread, sum};
 use crate::summary::Judgement;
 
@@ -211,12 +211,13 @@ impl Workspace {
 /// Measures a chunk; the single elements come along where somebody takes them.
 pub(super) fn measure(
     chunk: &Chunk,
-    nodes: &Nodes,
+    points: &[[f64; 3]],
+    planar: bool,
     work: &mut Workspace,
     bins: &mut Bins,
 ) -> (ShapeStatistics, Option<Box<Rows>>) {
     let shape = chunk.shape();
-    let signed = shape.dimension() == 3 || nodes.is_planar();
+    let signed = shape.dimension() == 3 || planar;
     let bins = bins.shape_mut(shape);
     let mut found = ShapeStatistics { count: chunk.len() as u64, ..Default::default() };
     let position = position(chunk.origin());
@@ -225,8 +226,8 @@ pub(super) fn measure(
     for (number, (rows, labels)) in blocks.enumerate() {
         // Meshes are numbered less well than one hopes: without this a third of the time goes by waiting for nodes.
         let next = chunk.rows().get((number + 1) * block..).unwrap_or_default();
-        nodes.prefetch(&next[..next.len().min(block)]);
-        gather(rows, nodes.rows(), shape.corners(), &mut work.corners);
+        prefetch(points, &next[..next.len().min(block)]);
+        gather(rows, points, shape.corners(), &mut work.corners);
         let first = position + (number * LANES) as u64;
         let tags = chunk.tags().get(number * LANES..).unwrap_or_default();
         let block = Block { shape, rows, labels, tags: &tags[..tags.len().min(LANES)], first };

@@ -7,12 +7,16 @@ mod assemble;
 mod duplicates;
 mod each;
 mod elements;
+mod in_order;
+mod join;
 mod listing;
+mod locality;
 mod measure;
 mod merge;
 mod nodes;
 mod options;
 mod regions;
+mod row_map;
 mod run;
 #[cfg(test)]
 mod tests;

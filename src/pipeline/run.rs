@@ -90,7 +90,7 @@ fn measure(
     let mut prints = options.all_checks.then(|| Fingerprints::new(bytes, &input.scratch)).transpose()?;
     let prints_in = prints.as_mut();
     let (mut merged, bins) =
-        measure_elements(&plan.elements, &nodes, options, listing, prints_in, regions, progress)?;
+        measure_elements(&plan.elements, &nodes, input, options, listing, prints_in, regions, progress)?;
     if let Some(prints) = prints {
         merged.duplicate_elements = Some(prints.repeated()?);
         merged.coincident_nodes = Some(coincident_nodes(&nodes, bytes, &input.scratch)?);

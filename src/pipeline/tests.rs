@@ -5,12 +5,15 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
-use super::Options;
-use super::run::run_as;
+use super::join::{Join, Local};
+use super::locality::{Used, locality};
+use super::nodes::read_nodes;
+use super::run::{budget, run_as};
+use super::{Options, Progress};
 use crate::error::{At, Error, Result};
-use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, Piece};
-use crate::input::{Input, Limits, Scratch, Source, Spot};
-use crate::mesh::{ElementType, Shape};
+use crate::formats::{ElementLayout, ElementSink, Format, NodeBatch, NodeLayout, Outline, Piece, Plan};
+use crate::input::{Budget, Input, Limits, Scratch, Source, Spot};
+use crate::mesh::{ElementType, NodesBuilder, Shape};
 use crate::summary::Summary;
 
 /// A box of hexahedra, `SIDE` along each axis, each followed by one tetrahedron of its corners.
@@ -125,8 +128,9 @@ fn lattice(format: &'static Lattice, threads: usize, memory: u64) -> Result<Summ
     let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
     file.write_all(&[7; 100]).expect("room for it");
     let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
-    let input = Input::open(file.path(), &Limits::default(), &scratch)?;
+    let mut input = Input::open(file.path(), &Limits::default(), &scratch)?;
     let options = Options { threads, memory, run_info: false, ..Options::default() };
+    input.memory = budget(&options);
     run_as(&input, format, &options, None)
 }
 
@@ -151,6 +155,37 @@ fn the_summary_does_not_depend_on_threads_or_memory() {
         for memory in [0, 1 << 20, 1 << 30] {
             assert_eq!(text(lattice(&FORMAT, threads, memory).expect("sound")), first, "{threads} {memory}");
             assert_eq!(text(lattice(&TURNED, threads, memory).expect("sound")), first, "{threads} {memory}");
+        }
+    }
+}
+
+#[test]
+fn a_join_brings_each_piece_the_points_of_its_rows() {
+    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+    file.write_all(&[7; 100]).expect("room for it");
+    let scratch = Scratch::new(&std::env::temp_dir(), 1 << 30);
+    let input = Input::open(file.path(), &Limits::default(), &scratch).expect("a file");
+    let mut plan = Plan::default();
+    SOUND.outline(&input, &mut plan).expect("sound");
+    let builder = NodesBuilder::new(&Budget::new(0), &scratch);
+    let nodes = read_nodes(&plan.nodes, 2, builder, &Progress::default()).expect("sound");
+    assert!(nodes.is_spilled());
+    let options = Options::default();
+    let found = locality(&plan.elements, &nodes, &options).expect("enough pieces");
+    assert!(found.paged < found.joined, "the lattice is in order: {found:?}");
+    for threads in [1, 3] {
+        let join = Join::new(&plan.elements, &nodes, threads, 0, &scratch, &options).expect("scratch");
+        assert_eq!(join.blocks(), 4);
+        let (mut local, mut used) = (Local::default(), Used::default());
+        for (number, piece) in plan.elements.iter().enumerate() {
+            used.read(piece, number, &nodes, &options).expect("sound");
+            join.read(number, &mut local).expect("scratch");
+            assert_eq!(local.points().len(), used.rows().len());
+            let mut rows = used.rows().to_vec();
+            local.localise(&mut rows);
+            for (row, place) in used.rows().iter().zip(rows) {
+                assert_eq!(local.points()[place as usize], nodes.rows()[*row as usize]);
+            }
         }
     }
 }

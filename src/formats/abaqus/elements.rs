@@ -11,6 +11,7 @@ use super::fields::{Fields, LARGEST_NUMBER};
 use super::keywords::label;
 use super::types::Kind;
 use crate::error::{Error, Kind as Fault, Result};
+use crate::formats::plain::{Columns, PlainRows};
 use crate::formats::text::LineReader;
 use crate::formats::{ElementLayout, ElementSink, PIECE_BYTES};
 use crate::input::{Input, Source, Spot};
@@ -80,7 +81,19 @@ impl ElementLines {
     /// An error leaves `fields` on the line that it is about.
     fn records(&self, fields: &mut Fields<'_>, base: u64, out: &mut ElementSink<'_>) -> Result<()> {
         let mut ids = Vec::with_capacity(self.kind.of.nodes.min(MOST_NODES));
+        let Kind { of, least } = &self.kind;
+        let columns = Columns { kind: of, first: None, before: (&[], 0), after: 0, scope: self.scope };
+        let mut plain = (*least == of.nodes && self.instances.is_none())
+            .then(|| PlainRows::new(b',', &columns))
+            .flatten();
         while fields.next_line()? {
+            if let Some(plain) = &mut plain {
+                let taken = plain.take(fields.rest(), &columns, u64::MAX, out)?;
+                fields.at += taken.bytes;
+                if taken.rows > 0 {
+                    continue;
+                }
+            }
             let start = fields.at;
             out.at = Spot::Text(base + start as u64);
             let element = fields.number("an element number")?;

@@ -20,6 +20,11 @@ impl<'t> Fields<'t> {
         Self { bytes, at: 0 }
     }
 
+    /// The bytes from here on.
+    pub(super) fn rest(&self) -> &'t [u8] {
+        &self.bytes[self.at..]
+    }
+
     #[inline]
     fn byte(&self) -> Option<u8> {
         self.bytes.get(self.at).copied()
@@ -97,7 +102,7 @@ impl<'t> Fields<'t> {
     pub(super) fn integer(&mut self, expected: &str) -> Result<u64> {
         self.skip_blanks();
         let start = self.at;
-        let (mut value, len) = self.bytes[start..].first_chunk().map_or((0, 0), short_number);
+        let (mut value, len) = self.bytes[start..].first_chunk().map_or((0, 0), text::short_number);
         self.at += len;
         if len == 0 || len == 8 {
             while let Some(digit) = self.byte().map(|b| b.wrapping_sub(b'0')).filter(|digit| *digit < 10) {
@@ -215,25 +220,6 @@ impl<'t> Fields<'t> {
             _ => Error::malformed(expected, excerpt(rest)),
         }
     }
-}
-
-/// The digits that `bytes` begin with: their value and how many they are, all eight at once.
-#[inline]
-fn short_number(bytes: &[u8; 8]) -> (u64, usize) {
-    const HIGH: u64 = 0x8080_8080_8080_8080;
-    // Digits become 0 to 9; what is larger gets its highest bit set, without a carry to its neighbour.
-    let digits = u64::from_le_bytes(*bytes) ^ 0x3030_3030_3030_3030;
-    let others = (((digits & !HIGH) + 0x7676_7676_7676_7676) | digits) & HIGH;
-    let len = others.trailing_zeros() as usize / 8;
-    if len == 0 {
-        return (0, 0);
-    }
-    // Moved to the end, with zeros before: pairs, fours and eights are then added up side by side.
-    let digits = digits << (64 - 8 * len);
-    let pairs = (digits * 10 + (digits >> 8)) & 0x00ff_00ff_00ff_00ff;
-    let fours = (pairs * 100 + (pairs >> 16)) & 0x0000_ffff_0000_ffff;
-    let eight = (fours * 10_000 + (fours >> 32)) & 0xffff_ffff;
-    (eight, len)
 }
 
 #[cfg(test)]

@@ -29,6 +29,16 @@ impl<'t> Rows<'t> {
         self.at < self.bytes.len()
     }
 
+    /// The bytes from here on.
+    pub(super) fn rest(&self) -> &'t [u8] {
+        &self.bytes[self.at..]
+    }
+
+    /// Goes on after `bytes` bytes.
+    pub(super) fn pass(&mut self, bytes: usize) {
+        self.at += bytes;
+    }
+
     /// Passes blank lines; says whether bytes are left.
     pub(super) fn next_block(&mut self) -> bool {
         while self.bytes.get(self.at).is_some_and(u8::is_ascii_whitespace) {

@@ -3,11 +3,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Version;
 use super::groups::Groups;
 use super::rows::Rows;
 use super::walk::{Gathered, Walk};
+use super::{Version, types};
 use crate::error::{Error, Result};
+use crate::formats::plain::{Columns, PlainRows};
 use crate::formats::{ElementLayout, ElementSink, Outline, PIECE_BYTES, Piece};
 use crate::input::Source;
 use crate::mesh::ElementType;
@@ -99,11 +100,21 @@ impl ElementLayout for TaggedRows {
         let window = self.source.window(span.clone());
         let mut rows = Rows::new(span.start, &window);
         let mut ids = Vec::new();
+        let first = self.version == Version::V1;
+        let mut plain: Option<(&Arc<ElementType>, [u64; 2], PlainRows)> = None;
         while rows.more() {
+            if let Some((kind, before, plain)) = &mut plain {
+                let columns =
+                    Columns { kind, first: None, before: (before, before[1] as usize), after: 0, scope: 0 };
+                let taken = plain.take(rows.rest(), &columns, u64::MAX, out)?;
+                rows.pass(taken.bytes);
+                if taken.rows > 0 {
+                    continue;
+                }
+            }
             out.at = rows.spot();
             let label = rows.integer(LABEL)?;
             let kind = rows.kind()?;
-            let first = self.version == Version::V1;
             let tags = if first { 2 } else { rows.integer("the number of an element's tags")? };
             let mut group = 0;
             for k in 0..tags {
@@ -121,6 +132,15 @@ impl ElementLayout for TaggedRows {
             }
             rows.end()?;
             out.element(label, kind, &ids)?;
+            // The next rows are most likely of the same type with as many tags.
+            if !first
+                && !out.wants_regions()
+                && plain.as_ref().is_none_or(|(last, known, _)| !Arc::ptr_eq(last, kind) || known[1] != tags)
+            {
+                let columns = Columns { kind, first: None, before: (&[], 0), after: 0, scope: 0 };
+                plain = types::number_of(kind)
+                    .and_then(|number| Some((kind, [number, tags], PlainRows::new(b' ', &columns)?)));
+            }
         }
         Ok(())
     }
@@ -164,10 +184,19 @@ fn read_rows(
     out: &mut ElementSink<'_>,
 ) -> Result<()> {
     ids.resize(kind.nodes, 0);
-    for _ in 0..count {
-        if !rows.more() {
-            break;
+    let columns = Columns { kind, first: None, before: (&[], 0), after: 0, scope: 0 };
+    let mut plain = PlainRows::new(b' ', &columns);
+    let mut left = count;
+    while left > 0 && rows.more() {
+        if let Some(plain) = &mut plain {
+            let taken = plain.take(rows.rest(), &columns, left, out)?;
+            rows.pass(taken.bytes);
+            left -= taken.rows;
+            if taken.rows > 0 {
+                continue;
+            }
         }
+        left -= 1;
         out.at = rows.spot();
         let label = rows.integer(LABEL)?;
         for id in ids.iter_mut() {

@@ -16,6 +16,14 @@ pub(super) fn by_number(number: u64) -> Result<&'static Arc<ElementType>> {
     }
 }
 
+/// The number of a type.
+pub(super) fn number_of(kind: &Arc<ElementType>) -> Option<u64> {
+    TYPES
+        .iter()
+        .position(|known| known.as_ref().is_some_and(|known| Arc::ptr_eq(known, kind)))
+        .map(|n| n as u64)
+}
+
 static TYPES: LazyLock<Vec<Option<Arc<ElementType>>>> = LazyLock::new(|| {
     let most = ROWS.iter().map(|row| row.0).max().unwrap_or(0);
     let mut types = vec![None; most + 1];

@@ -27,6 +27,16 @@ impl<'t> Numbers<'t> {
         Spot::Text(self.base + self.at as u64)
     }
 
+    /// The bytes from here on.
+    pub fn rest(&self) -> &'t [u8] {
+        &self.bytes[self.at..]
+    }
+
+    /// Goes on after `bytes` bytes.
+    pub fn pass(&mut self, bytes: usize) {
+        self.at += bytes;
+    }
+
     /// Passes blanks and comments; says whether something follows.
     #[inline]
     pub fn more(&mut self) -> bool {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::{Numbers, TokenReader};
 use crate::error::Result;
+use crate::formats::plain::{Columns, PlainRows};
 use crate::formats::{ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, Piece};
 use crate::input::Source;
 use crate::mesh::ElementType;
@@ -123,7 +124,21 @@ impl ElementLayout for ElementRows {
         let mut numbers = Numbers::new(span.start, &window, self.comment);
         let mut ids = vec![0; self.kind.nodes];
         let mut label = self.first;
+        let columns =
+            Columns { kind: self.kind, first: Some(label), before: (&[], 0), after: self.extra, scope: 0 };
+        // References are what divides a mesh into regions.
+        let passed = self.extra == 0 || !out.wants_regions();
+        let mut plain = passed.then(|| PlainRows::new(b' ', &columns)).flatten();
         while numbers.more() {
+            if let Some(plain) = &mut plain {
+                let columns = Columns { first: Some(label), ..columns };
+                let taken = plain.take(numbers.rest(), &columns, u64::MAX, out)?;
+                numbers.pass(taken.bytes);
+                label += taken.rows;
+                if taken.rows > 0 {
+                    continue;
+                }
+            }
             out.at = numbers.spot();
             for id in &mut ids {
                 *id = numbers.integer("the number of a node")?;
