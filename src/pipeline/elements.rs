@@ -222,7 +222,7 @@ impl<'a> Worker<'a> {
         let done = done.and_then(|()| sink.finish()).map_err(|error| piece.layout.source().place(error, at));
         let good = done.is_ok();
         if let Access::Table { release_every: Some(every) } = shared.access
-            && number % every == 0
+            && number.is_multiple_of(every)
         {
             shared.nodes.release(0..shared.nodes.rows().len());
         }
