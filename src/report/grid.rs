@@ -122,7 +122,7 @@ mod tests {
         );
         let marked = text(|out| grid.markdown(out));
         assert!(
-            marked.contains("|---|---:|\n") && marked.contains("\\|") && !marked.contains('\u{1b}'),
+            marked.contains("|---|---:|\n") && marked.contains("&#124;") && !marked.contains('\u{1b}'),
             "{marked}"
         );
     }

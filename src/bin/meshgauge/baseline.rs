@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 
 use meshgauge::Summary;
 
-use crate::names::SUFFIX;
 use crate::publish::publish;
+
+/// Not the suffix of results: who collects those must not find a mesh twice.
+const SUFFIX: &str = ".baseline.json";
 
 /// Larger files are no summary of ours.
 const LARGEST: u64 = 1 << 28;
