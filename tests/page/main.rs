@@ -49,7 +49,8 @@ fn page(folder: &Path, arguments: &[&str]) -> (PathBuf, String) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let path = folder.join("out/page.html");
     let text = fs::read_to_string(&path).expect("the page");
-    (path, text)
+    // The template engine writes a slash as a reference; that is the same text.
+    (path, text.replace("&#x2f;", "/"))
 }
 
 #[test]
