@@ -56,7 +56,6 @@ fn document() -> String {
     out
 }
 
-#[cfg(feature = "hdf5")]
 #[test]
 fn the_page_of_formats_is_in_step() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/FORMATS.md");

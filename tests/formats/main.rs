@@ -4,6 +4,8 @@
 #![expect(clippy::disallowed_methods, reason = "small meshes of known size are read whole, to be rewritten")]
 
 mod corpus;
+// The page has all formats, so it is held where all are built in.
+#[cfg(feature = "hdf5")]
 mod document;
 mod mixed;
 

@@ -17,6 +17,7 @@ pub enum Heads {
     /// The code of its type; what follows that, the function tells.
     Codes(fn(u64) -> Option<Head>),
     /// The number of its nodes: all are of one type.
+    #[cfg(feature = "hdf5")]
     Counts(&'static Arc<ElementType>),
 }
 
@@ -116,6 +117,7 @@ impl Coded {
     fn element(&self, reader: &mut Reader<'_>, at: u64, label: u64) -> Result<Found> {
         let number = self.number(reader, at, label)?;
         let (kind, start, nodes) = match self.heads {
+            #[cfg(feature = "hdf5")]
             Heads::Counts(kind) => (kind, at + 1, number),
             Heads::Codes(find) => match find(number) {
                 Some(Head::Fixed(kind)) => (kind, at + 1, kind.nodes as u64),

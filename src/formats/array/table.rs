@@ -16,6 +16,7 @@ pub enum Table {
 
 impl Table {
     /// One array in which all first components stand first, then all second ones.
+    #[cfg(feature = "hdf5")]
     pub fn striped(array: &Array, width: usize) -> Self {
         let count = array.len() / (width as u64).max(1);
         Table::Columns((0..width as u64).map(|k| array.part(k * count..(k + 1) * count)).collect())
