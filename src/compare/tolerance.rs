@@ -23,7 +23,8 @@ impl Tolerance {
 
 /// The tolerances of every statistic. Meshers place nodes a little differently from version to version; what that
 /// alone does to a mesh lies within the defaults.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Tolerances {
     /// Of a minimum, and of a quantile that rests on fewer than ten values. Also how far under a limit a value lies
     /// before it counts as newly under it.
@@ -42,6 +43,16 @@ pub struct Tolerances {
     pub volume: f64,
     /// Of the number of nodes and elements and of sizes, as a share of the base. They are neither better nor worse.
     pub size: f64,
+}
+
+impl Tolerances {
+    /// Whether every tolerance is a number from 0 up.
+    pub fn is_sound(&self) -> bool {
+        let pairs = [self.minimum, self.mean, self.quantile];
+        let single = [self.distance, self.under, self.checks, self.volume, self.size];
+        let all = pairs.into_iter().flat_map(|pair| [pair.absolute, pair.relative]).chain(single);
+        all.into_iter().all(|number| number.is_finite() && number >= 0.0)
+    }
 }
 
 impl Default for Tolerances {

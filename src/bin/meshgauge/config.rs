@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use meshgauge::Options;
-use meshgauge::compare::{Tolerance, Tolerances};
+use meshgauge::compare::Tolerances;
 use meshgauge::mesh::{Frame, System};
 use meshgauge::summary::{Judgement, PRESETS, Rule};
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ pub struct Config {
     /// What makes a mesh fail.
     pub verdict: Verdict,
     /// How much may change between two meshes.
-    pub compare: Compare,
+    pub compare: Tolerances,
     /// What the daemon compares each mesh with.
     pub baseline: Baseline,
     /// Limits that guard the machine.
@@ -81,21 +81,6 @@ pub struct Verdict {
     pub preset: String,
     pub fail_under: BTreeMap<String, f64>,
     pub rules: Vec<rules::Row>,
-}
-
-/// `[compare]`
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-#[allow(missing_docs)]
-pub struct Compare {
-    pub minimum: Tolerance,
-    pub mean: Tolerance,
-    pub quantile: Tolerance,
-    pub distance: f64,
-    pub under: f64,
-    pub checks: f64,
-    pub volume: f64,
-    pub size: f64,
 }
 
 /// `[baseline]`
@@ -259,30 +244,6 @@ impl Baseline {
     /// Which meshes are one part.
     pub fn naming(&self) -> Result<Naming, Usage> {
         Naming::new(&self.pattern).map_err(|why| Usage(format!("baseline.pattern: {why}")))
-    }
-}
-
-impl Default for Compare {
-    fn default() -> Self {
-        let Tolerances { minimum, mean, quantile, distance, under, checks, volume, size } =
-            Tolerances::default();
-        Self { minimum, mean, quantile, distance, under, checks, volume, size }
-    }
-}
-
-impl Compare {
-    /// The tolerances as the library takes them.
-    pub fn tolerances(&self) -> Tolerances {
-        let &Self { minimum, mean, quantile, distance, under, checks, volume, size } = self;
-        Tolerances { minimum, mean, quantile, distance, under, checks, volume, size }
-    }
-
-    /// Whether every tolerance is a number from 0 up.
-    fn is_sound(&self) -> bool {
-        let pairs = [self.minimum, self.mean, self.quantile];
-        let single = [self.distance, self.under, self.checks, self.volume, self.size];
-        let all = pairs.into_iter().flat_map(|pair| [pair.absolute, pair.relative]).chain(single);
-        all.into_iter().all(|number| number.is_finite() && number >= 0.0)
     }
 }
 

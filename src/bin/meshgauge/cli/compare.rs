@@ -61,7 +61,7 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
     let source = Source { options: &config.options()?, rules: &config.watch };
     let base = source.read(&args.base)?;
     let new = source.read(&args.new)?;
-    let tolerances = config.compare.tolerances();
+    let tolerances = config.compare;
     let mut found = match (&base[..], &new[..]) {
         // Two files are compared whatever they are named.
         ([base], [new]) if !args.base.is_dir() && !args.new.is_dir() => {

@@ -121,7 +121,7 @@ fn label(meshes: &mut [Mesh]) {
 /// Each mesh beside its base: that of the same name in the results to compare with, else the last of its name before it.
 /// `None` where nothing is compared.
 fn changes(meshes: &[Mesh], base: Option<Vec<Named>>, config: &Config) -> Option<Vec<Comparison>> {
-    let tolerances = config.compare.tolerances();
+    let tolerances = config.compare;
     let fixed = base.is_some();
     let base: Vec<Named> = base.unwrap_or_default();
     let mut before: BTreeMap<&str, &Summary> =

@@ -164,7 +164,7 @@ fn start(
         record.watch_for_regressions(Watchman {
             baselines: Baselines::of(&places.state),
             naming: config.baseline.naming()?,
-            tolerances: config.compare.tolerances(),
+            tolerances: config.compare,
         });
     }
     if torn > 0 {
