@@ -52,7 +52,7 @@ def check_parquet(path, expected):
         if name == "region":
             found = [value or "" for value in found]
         assert found == values, name
-    counted = duckdb.sql(f"select count(*), count(M31), min(M31) from '{path}'").fetchone()
+    counted = duckdb.connect().execute(f"select count(*), count(M31), min(M31) from '{path}'").fetchone()
     m31 = [value for value in expected["M31"] if value is not None]
     assert counted == (len(expected["element"]), len(m31), min(m31, default=None)), counted
 
