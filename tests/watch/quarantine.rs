@@ -1,15 +1,23 @@
 //! A mesh that ends its workers again and again is left alone.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
 
 use rustix::process::Signal;
 
 use crate::daemon::{Daemon, LONGER, MESH, ONE_WORKER, Site, large_mesh, one_worker, send};
 
-/// Ends the worker that has the mesh, at its so-manieth attempt.
+/// Whether a process has mapped a file of this name.
+fn has_mapped(process: u32, mesh: &str) -> bool {
+    let Ok(maps) = File::open(format!("/proc/{process}/maps")) else { return false };
+    BufReader::new(maps).lines().map_while(Result::ok).any(|line| line.ends_with(mesh))
+}
+
+/// Ends the worker that has the mesh, at its so-manieth attempt: one that is killed before it took the mesh is the
+/// machine's fault, not the mesh's.
 fn kill_over(daemon: &Daemon<'_>, site: &Site, mesh: &str, attempt: usize) {
     daemon.wait("the claim", || site.events_of("mesh.claimed", mesh).len() == attempt);
-    daemon.wait("the worker", || !daemon.workers().is_empty());
+    daemon.wait("the worker", || daemon.workers().iter().any(|worker| has_mapped(*worker, mesh)));
     daemon.workers().into_iter().for_each(|worker| send(worker, Signal::KILL));
 }
 
