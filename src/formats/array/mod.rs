@@ -153,30 +153,37 @@ pub struct Array {
 }
 
 macro_rules! convert {
-    ($type:ty, $to:ty, $endian:expr, $bytes:expr, $out:expr) => {{
+    ($type:ty, ($($cast:tt)*), $endian:expr, $bytes:expr, $out:expr) => {{
         let (raw, _) = $bytes.as_chunks::<{ size_of::<$type>() }>();
         match $endian {
-            Endian::Little => $out.extend(raw.iter().map(|raw| <$type>::from_le_bytes(*raw) as $to)),
-            Endian::Big => $out.extend(raw.iter().map(|raw| <$type>::from_be_bytes(*raw) as $to)),
+            Endian::Little => $out.extend(raw.iter().map(|raw| <$type>::from_le_bytes(*raw) $($cast)*)),
+            Endian::Big => $out.extend(raw.iter().map(|raw| <$type>::from_be_bytes(*raw) $($cast)*)),
         }
     }};
 }
 
 macro_rules! convert_any {
-    ($number:expr, $to:ty, $endian:expr, $bytes:expr, $out:expr) => {
+    ($number:expr, $cast:tt, $endian:expr, $bytes:expr, $out:expr) => {
         match $number {
-            Number::I8 => convert!(i8, $to, $endian, $bytes, $out),
-            Number::U8 => convert!(u8, $to, $endian, $bytes, $out),
-            Number::I16 => convert!(i16, $to, $endian, $bytes, $out),
-            Number::U16 => convert!(u16, $to, $endian, $bytes, $out),
-            Number::I32 => convert!(i32, $to, $endian, $bytes, $out),
-            Number::U32 => convert!(u32, $to, $endian, $bytes, $out),
-            Number::I64 => convert!(i64, $to, $endian, $bytes, $out),
-            Number::U64 => convert!(u64, $to, $endian, $bytes, $out),
-            Number::F32 => convert!(f32, $to, $endian, $bytes, $out),
-            Number::F64 => convert!(f64, $to, $endian, $bytes, $out),
+            Number::I8 => convert!(i8, $cast, $endian, $bytes, $out),
+            Number::U8 => convert!(u8, $cast, $endian, $bytes, $out),
+            Number::I16 => convert!(i16, $cast, $endian, $bytes, $out),
+            Number::U16 => convert!(u16, $cast, $endian, $bytes, $out),
+            Number::I32 => convert!(i32, $cast, $endian, $bytes, $out),
+            Number::U32 => convert!(u32, $cast, $endian, $bytes, $out),
+            Number::I64 => convert!(i64, $cast, $endian, $bytes, $out),
+            Number::U64 => convert!(u64, $cast, $endian, $bytes, $out),
+            Number::F32 => convert!(f32, $cast, $endian, $bytes, $out),
+            Number::F64 => convert!(f64, $cast, $endian, $bytes, $out),
         }
     };
+}
+
+impl Number {
+    /// Adds the whole numbers among `bytes`; of reals the whole parts. Negative ones come out as numbers over [`i64::MAX`].
+    pub fn integers(self, endian: Endian, bytes: &[u8], out: &mut Vec<u64>) {
+        convert_any!(self, (as i64 as u64), endian, bytes, out);
+    }
 }
 
 impl Array {
@@ -238,14 +245,14 @@ impl Array {
     pub fn integers(&self, range: Range<u64>, out: &mut Vec<u64>) {
         out.clear();
         let bytes = self.source.window(self.bytes_of(&range));
-        convert_any!(self.stored.number, u64, self.stored.endian, bytes, out);
+        self.stored.number.integers(self.stored.endian, &bytes, out);
     }
 
     /// Replaces `out` with the numbers of `range`.
     pub fn reals(&self, range: Range<u64>, out: &mut Vec<f64>) {
         out.clear();
         let bytes = self.source.window(self.bytes_of(&range));
-        convert_any!(self.stored.number, f64, self.stored.endian, bytes, out);
+        convert_any!(self.stored.number, (as f64), self.stored.endian, bytes, out);
     }
 
     fn bytes_of(&self, range: &Range<u64>) -> Range<u64> {

@@ -291,7 +291,7 @@ impl Dataset<'_> {
                 Array::in_file(&self.file.source, stored).integers(0..stored.count, &mut values);
             }
             None => slabs::read(self, number, |bytes| {
-                slabs::integers(bytes, number, &mut values);
+                number.integers(Endian::NATIVE, bytes, &mut values);
                 Ok(())
             })?,
         }

@@ -117,30 +117,3 @@ fn step(row_bytes: u64, chunk_rows: u64) -> u64 {
     }
     if chunk_rows.saturating_mul(row_bytes) <= HIGHEST_SLAB { chunk_rows } else { rows }
 }
-
-/// Adds the whole numbers among `bytes`, which are in the machine's own byte order; of reals the whole part.
-pub(super) fn integers(bytes: &[u8], number: Number, out: &mut Vec<u64>) {
-    macro_rules! numbers {
-        ($type:ty) => {
-            out.extend(
-                bytes
-                    .as_chunks::<{ size_of::<$type>() }>()
-                    .0
-                    .iter()
-                    .map(|raw| <$type>::from_ne_bytes(*raw) as i64 as u64),
-            )
-        };
-    }
-    match number {
-        Number::I8 => numbers!(i8),
-        Number::U8 => numbers!(u8),
-        Number::I16 => numbers!(i16),
-        Number::U16 => numbers!(u16),
-        Number::I32 => numbers!(i32),
-        Number::U32 => numbers!(u32),
-        Number::I64 => numbers!(i64),
-        Number::U64 => numbers!(u64),
-        Number::F32 => numbers!(f32),
-        Number::F64 => numbers!(f64),
-    }
-}
