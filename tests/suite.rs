@@ -30,6 +30,14 @@ output = "msh"
 disc = ["sh", "{suite}/good.sh", "{meshgauge}", "{size}", "{output}"]
 
 [[generator]]
+name = "graded"
+title = "One most of whose nodes stay, whatever the size"
+version = ["echo", "1.0"]
+output = "msh"
+[generator.run]
+disc = ["sh", "{suite}/graded.sh", "{meshgauge}", "{size}", "{output}"]
+
+[[generator]]
 name = "stubborn"
 title = "One that always makes the same"
 version = ["echo", "1.0"]
@@ -86,6 +94,12 @@ divisions=$(awk "BEGIN { print int(15 / $2 + 5.5) }")
 exec "$1" generate mapped-disc divisions=$divisions -q -o "$3"
 "#;
 
+/// Makes `round(9 + 2 / size)` divisions.
+const GRADED: &str = r#"
+divisions=$(awk "BEGIN { print int(9.5 + 2 / $2) }")
+exec "$1" generate mapped-disc divisions=$divisions -q -o "$3"
+"#;
+
 fn bench(folder: &Path, more: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_meshgauge"));
     let (suite, results) = (folder.join("suite.toml"), folder.join("results"));
@@ -97,6 +111,7 @@ fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("suite.toml"), SUITE).unwrap();
     fs::write(folder.path().join("good.sh"), GOOD).unwrap();
+    fs::write(folder.path().join("graded.sh"), GRADED).unwrap();
     folder
 }
 
@@ -115,6 +130,8 @@ fn every_generator_is_a_row_that_says_what_became_of_it() {
         (text("outcome"), text("reason"))
     };
     assert_eq!(told("good"), ("fine".into(), String::new()));
+    // By the square of the size alone the window would not be found in five tries.
+    assert_eq!(told("graded"), ("fine".into(), String::new()));
     assert_eq!(told("stubborn"), ("outside-window".into(), "25 nodes instead of 200 to 300".into()));
     assert_eq!(told("missing").0, "missing");
     assert_eq!(told("failing"), ("failed".into(), "ended with status 3: cannot mesh this".into()));

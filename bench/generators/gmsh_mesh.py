@@ -7,9 +7,12 @@ import gmsh
 
 from problems import HEIGHT, LENGTH, RADIUS, Pit
 
+# Half the height of a mixed specimen's slab of tetrahedra.
+SLAB = 5.0
+
 # Numbers of the algorithms, as in Gmsh's manual.
 SURFACE = {"meshadapt": 1, "delaunay": 5, "frontal": 6, "bamg": 7, "quads": 8, "parallelograms": 9, "quasistructured": 11}
-VOLUME = {"delaunay3d": 1, "initial3d": 3, "frontal3d": 4, "mmg3d": 7, "hxt": 10}
+VOLUME = {"delaunay3d": 1,  "initial3d": 3, "frontal3d": 4, "mmg3d": 7, "hxt": 10}
 
 
 def mapped_circle(z, divisions):
@@ -69,20 +72,38 @@ def cylinder(method, size):
 
 
 def specimen(pit, method, size):
-    body = gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, LENGTH, pit.radius)
+    # A mixed mesh has tetrahedra in the slab round the pit, and the slab's ends are swept to those of the specimen.
+    low, high = (LENGTH / 2 - SLAB, LENGTH / 2 + SLAB) if method == "mixed" else (0, LENGTH)
+    body = gmsh.model.occ.addCylinder(0, 0, low, 0, 0, high - low, pit.radius)
     hole = gmsh.model.occ.addSphere(*pit.centre, pit.mouth)
     if pit.depth > pit.mouth:
         shaft = gmsh.model.occ.addCylinder(*pit.centre, pit.depth, 0, 0, pit.mouth)
         gmsh.model.occ.cut([(3, body)], [(3, hole), (3, shaft)])
     else:
         gmsh.model.occ.cut([(3, body)], [(3, hole)])
+    if method == "mixed":
+        sweep_ends(pit, low, high)
     gmsh.model.occ.synchronize()
     field = gmsh.model.mesh.field.add("MathEval")
     gmsh.model.mesh.field.setString(field, "F", pit.field(size))
     gmsh.model.mesh.field.setAsBackgroundMesh(field)
     for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
-    gmsh.option.setNumber("Mesh.Algorithm3D", VOLUME[method])
+    if method == "mixed":
+        # Simple recombination: what finds no partner stays a triangle, and becomes a wedge.
+        gmsh.option.setNumber("Mesh.RecombinationAlgorithm", 0)
+    else:
+        gmsh.option.setNumber("Mesh.Algorithm3D", VOLUME[method])
+
+
+def sweep_ends(pit, low, high):
+    """From the slab between two heights to the specimen's ends: hexahedra, wedges where a triangle was left over."""
+    gmsh.model.occ.synchronize()
+    for z, way in [(low, -low), (high, LENGTH - high)]:
+        [face] = gmsh.model.getEntitiesInBoundingBox(-1e3, -1e3, z - 1e-6, 1e3, 1e3, z + 1e-6, 2)
+        gmsh.model.occ.extrude([face], 0, 0, way, [math.ceil(abs(way) / pit.coarsest)], recombine=True)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.setRecombine(*face)
 
 
 def build(problem, method, size):

@@ -36,8 +36,8 @@ def main():
             ends = Plane(Pnt(x, y, z), Vec(-1, 0, 0)) * Plane(Pnt(x + pit.depth, y, z), Vec(1, 0, 0))
             hole = hole + wall * ends
         geometry = CSGeometry()
-        geometry.Add((body - hole.maxh(size)).maxh(pit.radius / 3))
-        mesh = geometry.GenerateMesh(maxh=pit.radius / 3, grading=GROWTH)
+        geometry.Add((body - hole.maxh(size)).maxh(pit.coarsest))
+        mesh = geometry.GenerateMesh(maxh=pit.coarsest, grading=GROWTH)
     mesh.Save(output)
 
 

@@ -16,6 +16,8 @@ class Pit:
     def __init__(self, text):
         _, diameter, depth, width = text.split(":")
         self.radius = float(diameter) / 2
+        # As coarse as a polygon may be that lacks under half a per cent of its circle.
+        self.coarsest = self.radius / 6
         self.depth = float(depth)
         self.mouth = float(width) / 2
         # The hemisphere's centre; a shaft leads from it to the surface where the pit is deeper than its half width.
@@ -24,14 +26,14 @@ class Pit:
     def size(self, size, x, y, z):
         """Element size at a point, where it is `size` at the pit."""
         away = math.dist((x, y, z), self.centre) - self.mouth
-        return min(size + GROWTH * max(away, 0.0), self.radius / 3)
+        return min(size + GROWTH * max(away, 0.0), self.coarsest)
 
     def field(self, size):
         """The same as a formula of Gmsh."""
         cx, cy, cz = self.centre
         away = f"(Sqrt((x-{cx})^2+(y-{cy})^2+(z-{cz})^2)-{self.mouth})"
         grown = f"{size}+{GROWTH}*0.5*({away}+Fabs({away}))"
-        cap = self.radius / 3
+        cap = self.coarsest
         return f"0.5*({grown}+{cap}-Fabs({grown}-{cap}))"
 
 

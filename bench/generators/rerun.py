@@ -13,16 +13,17 @@ TRIANGLE = ["M11", "M12", "M13", "M14", "M15"]
 QUADRILATERAL = ["M21", "M22", "M23"]
 TETRAHEDRON = ["M31", "M32", "M33", "M34"]
 
-# Number, title, problems, shape, measures.
+# Number, title, problems (none: the specimens), shapes with what is put behind a mesh's name, measures.
 TABLES = [
-    ("1", "Triangular meshes of the disc", ["disc"], "triangle", TRIANGLE),
-    ("2", "Triangular faces of wedges", ["cylinder"], "wedge", TRIANGLE),
-    ("3", "Quadrilateral meshes of the disc", ["disc"], "quadrilateral", QUADRILATERAL),
-    ("4", "Quadrilateral faces of hexahedra", ["cylinder"], "hexahedron", QUADRILATERAL),
-    ("5", "Quadrilateral faces of wedges", ["cylinder"], "wedge", QUADRILATERAL),
-    ("6", "Tetrahedral meshes of the cylinder", ["cylinder"], "tetrahedron", TETRAHEDRON),
-    ("8", "Tetrahedra of the specimens", None, "tetrahedron", TETRAHEDRON),
-    ("9", "Quadrilateral faces of the specimens' hexahedra and wedges", None, "hexahedron", QUADRILATERAL),
+    ("1", "Triangular meshes of the disc", ["disc"], {"triangle": ""}, TRIANGLE),
+    ("2", "Triangular faces of wedges", ["cylinder"], {"wedge": ""}, TRIANGLE),
+    ("3", "Quadrilateral meshes of the disc", ["disc"], {"quadrilateral": ""}, QUADRILATERAL),
+    ("4", "Quadrilateral faces of hexahedra", ["cylinder"], {"hexahedron": ""}, QUADRILATERAL),
+    ("5", "Quadrilateral faces of wedges", ["cylinder"], {"wedge": ""}, QUADRILATERAL),
+    ("6", "Tetrahedral meshes of the cylinder", ["cylinder"], {"tetrahedron": ""}, TETRAHEDRON),
+    ("8", "Tetrahedra of the specimens", None, {"tetrahedron": ""}, TETRAHEDRON),
+    ("9", "Quadrilateral faces of the specimens' hexahedra and wedges", None, {"wedge": " W", "hexahedron": " H"}, QUADRILATERAL),
+    ("10", "Triangular faces of the specimens' wedges", None, {"wedge": ""}, TRIANGLE),
 ]
 
 
@@ -56,8 +57,8 @@ def runs(rows):
 
 
 def tables(rows, published):
-    for number, title, problems, shape, measures in TABLES:
-        here = [r for r in rows if r["summary"] and shape in r["summary"]["shapes"]]
+    for number, title, problems, shapes, measures in TABLES:
+        here = [r for r in rows if r["summary"]]
         here = [r for r in here if (r["problem"] in problems if problems else r["problem"].startswith("pit"))]
         print(f"\n### Table {number}: {title}\n\nMinimum (in element) mean ± standard deviation.\n")
         print(head(["mesh"] + measures))
@@ -67,11 +68,11 @@ def tables(rows, published):
                 old[p["mesh"]][p["measure"]] = cell(p["min"], p["mean"], p["sd"], p["min_element"])
         for mesh, cells in old.items():
             print(row([f"2007: {mesh}"] + [cells.get(m, "") for m in measures]))
-        for r in here:
+        for r, shape in [(r, shape) for r in here for shape in shapes if shape in r["summary"]["shapes"]]:
             found = r["summary"]["shapes"][shape]["measures"]
             name = r["generator"] if problems else f"{r['problem']}, {r['generator']}"
             cells = [cell(found[m]["min"], found[m]["mean"], found[m]["sd"], found[m]["min_element"]) for m in measures]
-            print(row([f"**{name}**"] + cells))
+            print(row([f"**{name}{shapes[shape]}**"] + cells))
 
 
 def spread(values):

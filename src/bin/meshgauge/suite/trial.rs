@@ -85,6 +85,7 @@ impl Trial<'_> {
         let tries = if fixed { 1 } else { self.run.suite.tries.max(1) };
         let mut size = self.problem.size * self.generator.size_factor;
         let mut best: Option<Made> = None;
+        let mut last: Option<(f64, u64)> = None;
         for attempt in 1..=tries {
             row.tries = attempt;
             let made = match self.attempt(size, row)? {
@@ -100,12 +101,23 @@ impl Trial<'_> {
             if is_right {
                 break;
             }
-            size *=
-                (nodes.max(1) as f64 / self.middle()).powf(1.0 / f64::from(Suite::dimension(self.problem)));
+            let growth = self.growth((size, nodes), last);
+            last = Some((size, nodes));
+            size *= (nodes.max(1) as f64 / self.middle()).powf(1.0 / growth);
         }
         let Some(made) = best else { return Ok(None) };
         self.fill(row, &made);
         Ok(Some(made.summary))
+    }
+
+    /// By which power of the element size the nodes become fewer. A mesh of one size has the dimension of its domain;
+    /// one that is graded has less, as most of it stays as it is, so two runs tell.
+    fn growth(&self, (size, nodes): (f64, u64), last: Option<(f64, u64)>) -> f64 {
+        let dimension = f64::from(Suite::dimension(self.problem));
+        let Some((last_size, last_nodes)) = last else { return dimension };
+        let seen = (last_nodes.max(1) as f64 / nodes.max(1) as f64).ln() / (size / last_size).ln();
+        // A generator that did not follow, or no other number of nodes, says nothing.
+        if seen.is_finite() && seen > 0.0 { seen.clamp(0.25, dimension) } else { dimension }
     }
 
     /// One run and the mesh that it made. Without one, the row says why.
