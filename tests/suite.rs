@@ -11,7 +11,7 @@ use serde_json::Value;
 
 const SUITE: &str = r#"
 title = "Generators that behave, and others"
-timeout = "2s"
+timeout = "1s"
 tries = 5
 
 [[problem]]
@@ -20,6 +20,7 @@ title = "Disc"
 area = 1963.4954
 nodes = [200, 300]
 size = 1.0
+published = ["FG2", "A5"]
 
 [[generator]]
 name = "good"
@@ -186,6 +187,9 @@ fn tables_hold_the_runs_and_the_measures() {
     {
         assert!(table.contains(part), "{part} in {table}");
     }
+    let of_2007 = table.lines().find(|line| line.contains("2007: FG2") && line.contains("M23")).unwrap();
+    assert!(of_2007.contains("0.026") && of_2007.contains("1936"), "{of_2007}");
+    assert!(!table.contains("2007: A5"), "of another shape");
     assert!(text("markdown").contains("| good | M23 |"));
     let csv = text("csv");
     assert_eq!(csv.lines().count(), 1 + 3 + 1, "a head, three measures of one mesh, a run without one");
@@ -201,6 +205,7 @@ fn a_suite_that_makes_no_sense_is_refused_with_its_place() {
         ("name = \"solid\"", "name = \"../solid\"", "a name is made of letters"),
         ("area = 1963.4954", "area = -1.0", "expected an area or a volume over 0"),
         ("nodes = [200, 300]", "nodes = [300, 200]", "nodes must be [fewest, most]"),
+        ("\"FG2\"", "\"FG9\"", "the report of 2007 has no mesh \"FG9\""),
         ("tries = 5", "trys = 5", "line 4: unknown field `trys`"),
     ];
     for (old, new, said) in cases {

@@ -6,6 +6,7 @@ use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle
 
 use super::layout;
 use super::numbers::{score, spread};
+use super::page::published::{self, Published};
 use super::safe::{escaped, markdown};
 use crate::summary::Summary;
 
@@ -30,8 +31,9 @@ impl Grid {
         Self { title: title.into(), columns: columns.iter().map(column).collect(), rows: Vec::new() }
     }
 
-    /// The report's tables of some meshes, one for each shape and what of it was measured.
-    pub fn of_measures(summaries: &[Summary]) -> Vec<Grid> {
+    /// The report's tables of some meshes, one for each shape and what of it was measured; under them those rows of the
+    /// report of 2007 that bear the labels.
+    pub fn of_measures(summaries: &[Summary], published: &[String]) -> Vec<Grid> {
         let columns = ["mesh", "measure", ">maximum", ">minimum", ">element", ">mean", ">deviation"];
         let grid = |table: &layout::Table<'_>| {
             let mut grid = Grid::new(table.title(), &columns);
@@ -44,6 +46,10 @@ impl Grid {
                     .collect()
             };
             grid.rows.extend(table.rows.iter().map(row));
+            for label in published {
+                let rows = published::rows(label, table.shape, table.on);
+                grid.rows.extend(rows.into_iter().map(Published::cells));
+            }
             grid
         };
         layout::tables(summaries).iter().map(grid).collect()

@@ -2,6 +2,9 @@
 #![cfg(feature = "program")]
 #![expect(clippy::disallowed_methods, reason = "small files of the project's own, and of this test")]
 
+mod since;
+mod snippets;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

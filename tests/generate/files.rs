@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Write;
 
-use meshgauge::generate::{self, Encoding, Problem};
+use meshgauge::generate::{self, Encoding, Problem, WRITERS};
 
 use crate::{nodes, problem};
 
@@ -146,7 +146,7 @@ fn what_cannot_be_written_is_said_and_nothing_is_touched() {
     let unknown = error("mesh.stl", Encoding::Default);
     assert!(unknown.is_usage());
     let message = unknown.to_string();
-    assert!(message.contains("expected .inp (abaqus), .msh (gmsh), .vtu (vtu), found \".stl\""), "{message}");
+    assert!(message.contains("expected .inp (abaqus), .msh (gmsh), .mesh (medit), .su2 (su2), .vtk (vtk), .vtu (vtu), found \".stl\""), "{message}");
     assert!(error("mesh", Encoding::Default).to_string().contains("found none"));
     assert_eq!(
         error("mesh.inp", Encoding::Compressed).to_string(),
@@ -164,4 +164,38 @@ fn a_full_disk_is_the_machines_fault() {
     std::os::unix::fs::symlink("/dev/full", &path).unwrap();
     let error = generate::write_file(&problem("mapped-disc", &[]), Encoding::Default, &path).unwrap_err();
     assert!(error.is_resource(), "{error}");
+}
+
+/// What was found in the elements, but for the numbers of elements, which count from 0 or from 1.
+fn found(path: &std::path::Path) -> serde_json::Value {
+    let summary = meshgauge::score(path, &meshgauge::Options::default()).unwrap();
+    let mut shapes = serde_json::to_value(&summary.shapes).unwrap();
+    for shape in shapes.as_object_mut().unwrap().values_mut() {
+        for measure in shape["measures"].as_object_mut().unwrap().values_mut() {
+            measure.as_object_mut().unwrap().remove("min_element");
+        }
+    }
+    serde_json::json!({ "shapes": shapes, "nodes": summary.nodes, "totals": summary.totals })
+}
+
+#[test]
+fn every_writer_in_every_encoding_is_read_back_to_the_same_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        problem("mapped-disc", &["divisions=7"]),
+        problem("fd-cylinder", &["strips=8", "rings=3", "layers=2", "radius=0.1"]),
+        problem("swept-cylinder", &["elements=tetrahedra", "divisions=3", "layers=2"]),
+    ];
+    for case in &cases {
+        let expected = folder.path().join("expected.inp");
+        generate::write_file(case, Encoding::Text, &expected).unwrap();
+        let expected = found(&expected);
+        for writer in WRITERS {
+            for encoding in writer.encodings {
+                let path = folder.path().join(format!("a.{}", writer.extensions[0]));
+                generate::write_file(case, *encoding, &path).unwrap();
+                assert_eq!(found(&path), expected, "{case} as {} {encoding:?}", writer.name);
+            }
+        }
+    }
 }

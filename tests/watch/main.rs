@@ -2,10 +2,12 @@
 #![cfg(feature = "program")]
 
 mod arriving;
+mod coordinates;
 mod daemon;
 mod failing;
 mod full;
 mod limits;
+mod live;
 mod mounts;
 mod naming;
 mod operating;

@@ -16,7 +16,7 @@ use crate::config_file;
 use crate::exit::Usage;
 use crate::quantity::{Size, Span};
 use crate::series::Naming;
-use crate::{rules, selection};
+use crate::{measuring, rules, selection};
 
 /// Every setting. `config/meshgauge.toml` says what each means.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -30,6 +30,8 @@ pub struct Config {
     pub compare: Tolerances,
     /// What the daemon compares each mesh with.
     pub baseline: Baseline,
+    /// What the daemon keeps of past scores.
+    pub history: History,
     /// Limits that guard the machine.
     pub limits: Limits,
     /// The daemon.
@@ -92,6 +94,14 @@ pub struct Baseline {
     pub pattern: String,
 }
 
+/// `[history]`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)]
+pub struct History {
+    pub keep: Span,
+}
+
 /// `[limits]`
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -128,6 +138,7 @@ pub struct Watch {
     pub ignore: Vec<String>,
     pub patience: Span,
     pub drain: Span,
+    pub rules: Vec<measuring::Row>,
 }
 
 /// How a file is known to be whole.
@@ -247,6 +258,12 @@ impl Baseline {
     }
 }
 
+impl Default for History {
+    fn default() -> Self {
+        Self { keep: Span(Duration::from_secs(90 * 24 * 3600)) }
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         let limits = meshgauge::input::Limits::default();
@@ -293,6 +310,7 @@ impl Default for Watch {
             ignore: still_written.map(String::from).to_vec(),
             patience: Span(Duration::from_secs(60)),
             drain: Span(Duration::from_secs(60)),
+            rules: Vec::new(),
         }
     }
 }
@@ -352,10 +370,13 @@ impl Config {
         self.telemetry.address()?;
         self.baseline.naming()?;
         let levels = ["error", "warn", "info", "debug", "trace"];
-        let stretches = self.score.stretch.iter().all(|factor| factor.is_finite() && *factor > 0.0);
+        measuring::check(&self.watch.rules).map_err(Usage)?;
         let wrong = [
             (!self.compare.is_sound(), "compare: tolerances are numbers from 0 up".to_owned()),
-            (!stretches, "score.stretch must be three numbers over 0".to_owned()),
+            (
+                !measuring::is_stretch(&self.score.stretch),
+                "score.stretch must be three numbers over 0".to_owned(),
+            ),
             (self.score.worst > MOST_WORST, format!("score.worst must be at most {MOST_WORST}")),
             (self.watch.settle.0.is_zero(), "watch.settle must be longer than 0s".to_owned()),
             (self.watch.scan.0.is_zero(), "watch.scan must be longer than 0s".to_owned()),

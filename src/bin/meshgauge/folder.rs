@@ -310,8 +310,12 @@ impl Walk {
 
 /// The first of the patterns that a name fits.
 pub fn ignored_by<'p>(patterns: &'p [String], name: &OsStr) -> Option<&'p str> {
-    let fits = |pattern: &&String| matches(pattern.as_bytes(), name.as_encoded_bytes());
-    patterns.iter().find(fits).map(String::as_str)
+    patterns.iter().find(|pattern| fits(pattern, name)).map(String::as_str)
+}
+
+/// Whether a name fits a pattern in which `*` stands for anything.
+pub fn fits(pattern: &str, name: &OsStr) -> bool {
+    matches(pattern.as_bytes(), name.as_encoded_bytes())
 }
 
 /// Device and inode: the same for every name that leads to one file.
@@ -319,7 +323,6 @@ fn place(data: &Metadata) -> (u64, u64) {
     (data.dev(), data.ino())
 }
 
-/// Whether a name fits a pattern in which `*` stands for anything.
 fn matches(pattern: &[u8], name: &[u8]) -> bool {
     match pattern.iter().position(|&b| b == b'*') {
         None => pattern == name,

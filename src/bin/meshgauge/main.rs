@@ -10,6 +10,7 @@ mod file_system;
 mod folder;
 mod identity;
 mod logging;
+mod measuring;
 mod names;
 mod nearest;
 mod path_text;

@@ -12,21 +12,21 @@ use tempfile::NamedTempFile;
 const UNFINISHED: (&str, &str) = (".meshgauge-", ".tmp");
 
 /// Replaces `path` for readers, without waiting for the disk: for what is of no worth after a crash.
-pub fn replace(path: &Path, text: &str) -> io::Result<()> {
-    unfinished(path, text)?.persist(path).map_err(|e| e.error)?;
+pub fn replace(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    unfinished(path, content.as_ref())?.persist(path).map_err(|e| e.error)?;
     Ok(())
 }
 
-/// Writes `text` to `path`: temporary file in the same folder, fsync, rename, fsync of the folder.
-pub fn publish(path: &Path, text: &str) -> io::Result<()> {
-    let file = unfinished(path, text)?;
+/// Writes `content` to `path`: temporary file in the same folder, fsync, rename, fsync of the folder.
+pub fn publish(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let file = unfinished(path, content.as_ref())?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|e| e.error)?;
     sync_folder(folder_of(path))
 }
 
-/// A temporary file beside `path` that holds `text`.
-fn unfinished(path: &Path, text: &str) -> io::Result<NamedTempFile> {
+/// A temporary file beside `path` that holds this.
+fn unfinished(path: &Path, content: &[u8]) -> io::Result<NamedTempFile> {
     let folder = folder_of(path);
     fs::create_dir_all(folder)?;
     let mut file = tempfile::Builder::new()
@@ -34,7 +34,7 @@ fn unfinished(path: &Path, text: &str) -> io::Result<NamedTempFile> {
         .suffix(UNFINISHED.1)
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
+    file.write_all(content)?;
     Ok(file)
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::str::FromStr;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +35,33 @@ impl FromStr for Span {
             Ok(duration) => Ok(Span(duration)),
             Err(_) => Err(format!("expected a duration such as 2s or 5min, found \"{text}\"")),
         }
+    }
+}
+
+/// A point in time, as a length of time before now (`7d`), a day (`2026-11-15`) or a time of UTC (`2026-11-15T06:00:00Z`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Since(pub SystemTime);
+
+impl FromStr for Since {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong =
+            || format!("expected a duration such as 7d, or a day such as 2026-11-15, found \"{text}\"");
+        if let Ok(before) = humantime::parse_duration(text) {
+            let time = SystemTime::now().checked_sub(before).filter(|time| *time >= SystemTime::UNIX_EPOCH);
+            return time.map(Self).ok_or_else(wrong);
+        }
+        let midnight = format!("{text} 00:00:00");
+        let time = humantime::parse_rfc3339_weak(text).or_else(|_| humantime::parse_rfc3339_weak(&midnight));
+        time.map(Self).map_err(|_| wrong())
+    }
+}
+
+/// RFC 3339 in UTC, as times stand in the state.
+impl fmt::Display for Since {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        humantime::format_rfc3339_millis(self.0).fmt(f)
     }
 }
 
@@ -90,6 +117,20 @@ mod tests {
         assert_eq!("4096".parse(), Ok(Size(4096)));
         assert!("much".parse::<Size>().is_err());
         assert!("-1".parse::<Size>().is_err());
+    }
+
+    #[test]
+    fn a_time_is_told_by_its_distance_or_its_day() {
+        let day: Since = "2026-11-15".parse().expect("a day");
+        assert_eq!(day.to_string(), "2026-11-15T00:00:00.000Z");
+        assert_eq!("2026-11-15T00:00:00Z".parse(), Ok(day));
+        assert_eq!("2026-11-15 00:00:00".parse(), Ok(day));
+        let week: Since = "7d".parse().expect("a duration");
+        let distance = week.0.elapsed().expect("before now").as_secs();
+        assert!((604_800..604_900).contains(&distance), "{distance}");
+        for wrong in ["yesterday", "", "2026-13-01", "99999999999y", "-1d"] {
+            assert!(wrong.parse::<Since>().is_err_and(|why| why.contains("such as 7d")), "{wrong}");
+        }
     }
 
     #[test]

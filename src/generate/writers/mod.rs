@@ -2,7 +2,10 @@
 
 mod abaqus;
 mod gmsh;
+mod medit;
 mod place;
+mod su2;
+mod vtk;
 mod vtu;
 
 use std::io::{self, BufWriter, Write};
@@ -52,7 +55,8 @@ pub struct Writer {
 }
 
 /// Every format that meshes are written in.
-pub static WRITERS: &[Writer] = &[abaqus::WRITER, gmsh::WRITER, vtu::WRITER];
+pub static WRITERS: &[Writer] =
+    &[abaqus::WRITER, gmsh::WRITER, medit::WRITER, su2::WRITER, vtk::WRITER, vtu::WRITER];
 
 /// What was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

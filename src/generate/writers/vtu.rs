@@ -4,9 +4,9 @@ use std::io::{self, Write};
 
 use flate2::write::ZlibEncoder;
 
+use super::vtk::cell_type;
 use super::{Encoding, Writer};
 use crate::generate::{MeshSource, Problem};
-use crate::mesh::Shape;
 
 pub(super) const WRITER: Writer = Writer {
     name: "vtu",
@@ -18,18 +18,6 @@ pub(super) const WRITER: Writer = Writer {
 
 /// Bytes that are compressed at a time.
 const BLOCK: usize = 1 << 18;
-
-/// The format's number for the linear cell of a shape.
-fn cell_type(shape: Shape) -> u8 {
-    match shape {
-        Shape::Triangle => 5,
-        Shape::Quadrilateral => 9,
-        Shape::Tetrahedron => 10,
-        Shape::Hexahedron => 12,
-        Shape::Wedge => 13,
-        Shape::Pyramid => 14,
-    }
-}
 
 /// The arrays of the file in the order of their data.
 #[derive(Clone, Copy)]

@@ -6,6 +6,8 @@
 
 mod bars;
 mod distribution;
+#[cfg(feature = "png")]
+mod png;
 mod scale;
 mod scene;
 mod sizes;
@@ -14,6 +16,8 @@ use crate::summary::{MeasureSummary, Sizes};
 
 pub use bars::{Bars, bars};
 pub use distribution::{Distribution, distribution};
+#[cfg(feature = "png")]
+pub use png::Painter;
 pub use scene::{Legend, Scene};
 pub use sizes::sizes;
 

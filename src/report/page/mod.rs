@@ -5,7 +5,7 @@
 
 mod groups;
 mod model;
-mod published;
+pub(super) mod published;
 mod series;
 
 use std::io::{self, Write};

@@ -58,6 +58,13 @@ pub fn rows(mesh: &str, shape: Shape, on: &str) -> Vec<&'static Published> {
 }
 
 impl Published {
+    /// The row as text: mesh, measure, maximum, minimum, element, mean, deviation, with the digits that were printed.
+    pub fn cells(&self) -> Vec<String> {
+        let [max, min, mean, sd] = self.values.map(|value| format!("{value:.3}"));
+        let mesh = format!("2007: {}", self.mesh);
+        vec![mesh, self.code.to_owned(), max, min, self.min_element.to_string(), mean, sd]
+    }
+
     /// What the row's table is about.
     fn is_of(&self, shape: Shape, on: &str) -> bool {
         let (triangles, quadrilaterals) = ("triangular faces", "quadrilateral faces");

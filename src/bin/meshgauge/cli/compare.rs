@@ -1,4 +1,4 @@
-//! `meshgauge compare BASE NEW`
+//! `meshgauge compare BASE NEW`, `meshgauge compare --since 7d`
 
 use std::collections::BTreeMap;
 use std::io::{Write, stdout};
@@ -10,24 +10,35 @@ use meshgauge::compare::{Comparisons, Outcome, compare, compare_sets};
 use meshgauge::report::COMPARISONS;
 
 use super::ConfigFile;
-use super::output;
+use super::{history, output};
 use crate::config::Config;
+use crate::daemon::Places;
 use crate::exit::{Status, Usage};
+use crate::quantity::Since;
 use crate::summaries::{Named, Source};
 
-/// Compare two meshes, or two folders of results: what got better, what got worse.
+/// Compare two meshes, two folders of results, or the daemon's scores of now and then: what got better, what got worse.
 ///
 /// Exits with 1 where something got worse than the tolerances of the configuration allow.
 #[derive(Debug, clap::Args)]
 #[command(after_help = super::EXIT_STATUS)]
 pub struct Args {
     /// What is compared with: a summary, a folder of results, or a mesh, which is scored first.
-    #[arg(value_name = "BASE")]
-    base: PathBuf,
+    #[arg(value_name = "BASE", required_unless_present = "since")]
+    base: Option<PathBuf>,
 
     /// What is compared: the same. Meshes of two folders are paired by name; - reads summaries from standard input.
-    #[arg(value_name = "NEW")]
-    new: PathBuf,
+    #[arg(value_name = "NEW", required_unless_present = "since")]
+    new: Option<PathBuf>,
+
+    /// Compare the last score of each part with the one that stood then, from the daemon's history: 7d, 2026-11-15 or
+    /// 2026-11-15T06:00:00Z (UTC).
+    #[arg(long, value_name = "WHEN", conflicts_with_all = ["base", "new"])]
+    since: Option<Since>,
+
+    /// With --since: the state folder of the daemon [default: that of the configuration, else results/.meshgauge].
+    #[arg(long, value_name = "DIR", requires = "since")]
+    state: Option<PathBuf>,
 
     /// What is printed: table, json or markdown.
     #[arg(long, value_name = "FORMAT", value_parser = format_names())]
@@ -58,24 +69,16 @@ impl Args {
 
 /// Compares what the command line names.
 pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
-    let source = Source { options: &config.options()?, rules: &config.watch };
-    let base = source.read(&args.base)?;
-    let new = source.read(&args.new)?;
-    let tolerances = config.compare;
-    let mut found = match (&base[..], &new[..]) {
-        // Two files are compared whatever they are named.
-        ([base], [new]) if !args.base.is_dir() && !args.new.is_dir() => {
-            let pair = compare(&new.name, &base.summary, &new.summary, &tolerances);
-            Comparisons::new(vec![pair], vec![], vec![])
-        }
-        _ => compare_sets(&by_name(base, &args.base)?, &by_name(new, &args.new)?, &tolerances),
+    let mut found = match (&args.since, &args.base, &args.new) {
+        (Some(since), ..) => since_then(*since, args.state.as_deref(), config)?,
+        (None, Some(base), Some(new)) => base_and_new(base, new, config)?,
+        _ => return Err(Usage("expected BASE and NEW, or --since".into()).into()),
     };
-    if args.partial || args.base.is_dir() && !args.new.is_dir() {
+    if args.partial {
         found = Comparisons::new(found.meshes, vec![], found.added);
     }
     if found.meshes.is_empty() && found.gone.is_empty() {
-        let (base, new) = (args.base.display(), args.new.display());
-        return Err(Usage(format!("no mesh of {new} has the name of one of {base}")).into());
+        return Err(Usage(no_pair(args)).into());
     }
     if !args.quiet || args.format.is_some() {
         let report =
@@ -85,6 +88,60 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
         out.flush()?;
     }
     Ok(if found.outcome == Outcome::Worse { Status::Failed } else { Status::Fine })
+}
+
+/// Why there is nothing to compare.
+fn no_pair(args: &Args) -> String {
+    match (&args.since, &args.base, &args.new) {
+        (None, Some(base), Some(new)) => {
+            format!("no mesh of {} has the name of one of {}", new.display(), base.display())
+        }
+        (Some(since), ..) => format!("no mesh has a score of now and one of {since}"),
+        _ => "there is nothing to compare".into(),
+    }
+}
+
+/// What two paths hold.
+fn base_and_new(base_path: &Path, new_path: &Path, config: &Config) -> anyhow::Result<Comparisons> {
+    let source = Source { options: &config.options()?, rules: &config.watch };
+    let base = source.read(base_path)?;
+    let new = source.read(new_path)?;
+    let tolerances = config.compare;
+    let mut found = match (&base[..], &new[..]) {
+        // Two files are compared whatever they are named.
+        ([base], [new]) if !base_path.is_dir() && !new_path.is_dir() => {
+            let pair = compare(&new.name, &base.summary, &new.summary, &tolerances);
+            Comparisons::new(vec![pair], vec![], vec![])
+        }
+        _ => compare_sets(&by_name(base, base_path)?, &by_name(new, new_path)?, &tolerances),
+    };
+    if base_path.is_dir() && !new_path.is_dir() {
+        found = Comparisons::new(found.meshes, vec![], found.added);
+    }
+    Ok(found)
+}
+
+/// The last score of each part beside the one that stood at a time. A part whose last mesh could not be scored is gone.
+fn since_then(since: Since, state: Option<&Path>, config: &Config) -> anyhow::Result<Comparisons> {
+    let mut watch = config.watch.clone();
+    if let Some(state) = state {
+        watch.state = state.to_owned();
+    }
+    let naming = config.baseline.naming()?;
+    let keep = config.history.keep;
+    if since.0.elapsed().is_ok_and(|distance| distance > keep.0) {
+        let why = format!("summaries are kept for {keep} (history.keep): what stood at {since} is not known");
+        return Err(Usage(why).into());
+    }
+    let parts = history::open(&Places::of(&watch).state)?
+        .then_and_now(&since.to_string(), |mesh| naming.part(mesh))?;
+    let (mut base, mut new) = (BTreeMap::new(), BTreeMap::new());
+    for (part, found) in parts {
+        let name = part.to_string_lossy();
+        base.extend(found.then.map(|summary| (name.to_string(), summary)));
+        new.extend(found.now.map(|summary| (name.to_string(), summary)));
+    }
+    Ok(compare_sets(&base, &new, &config.compare))
 }
 
 fn by_name(found: Vec<Named>, path: &Path) -> Result<BTreeMap<String, Summary>, Usage> {

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write, stdout};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 use clap::ValueEnum;
 
@@ -11,7 +10,7 @@ use super::ConfigFile;
 use crate::daemon::Places;
 use crate::daemon::fields::printable;
 use crate::exit::{Status, Usage};
-use crate::quantity::Span;
+use crate::quantity::Since;
 use crate::selection;
 use crate::series::Naming;
 use crate::state::{Entry, State};
@@ -27,9 +26,9 @@ pub struct Args {
     #[arg(long, value_name = "MEASURE", value_parser = measure)]
     measure: Option<String>,
 
-    /// Only what was scored within this time, as in 7d.
-    #[arg(long, value_name = "DURATION")]
-    since: Option<Span>,
+    /// Only what was scored since: 7d, 2026-11-15 or 2026-11-15T06:00:00Z (UTC).
+    #[arg(long, value_name = "WHEN")]
+    since: Option<Since>,
 
     /// What is printed.
     #[arg(long, value_enum, default_value_t = Format::Table)]
@@ -66,7 +65,8 @@ pub fn run(args: &Args) -> anyhow::Result<Status> {
     }
     let naming = config.baseline.naming()?;
     let state = open(&Places::of(&watch).state)?;
-    let mut entries = state.history(|mesh| naming.part(mesh) == args.name, &since(args.since))?;
+    let since = args.since.map(|since| since.to_string()).unwrap_or_default();
+    let mut entries = state.history(|mesh| naming.part(mesh) == args.name, &since)?;
     entries.retain(|entry| args.measure.as_ref().is_none_or(|code| *code == entry.measure));
     if entries.is_empty() {
         return Err(Usage(unknown(&state, &naming, &args.name)?).into());
@@ -87,11 +87,6 @@ pub fn run(args: &Args) -> anyhow::Result<Status> {
 pub fn open(folder: &Path) -> anyhow::Result<State> {
     let missing = || Usage(format!("{}: expected the state of a daemon, found none", folder.display()));
     Ok(State::read(folder)?.ok_or_else(missing)?)
-}
-
-fn since(span: Option<Span>) -> String {
-    let start = span.and_then(|span| SystemTime::now().checked_sub(span.0));
-    start.map(|start| humantime::format_rfc3339_millis(start).to_string()).unwrap_or_default()
 }
 
 /// Why there is nothing, with the nearest name that is known.

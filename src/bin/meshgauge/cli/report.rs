@@ -1,10 +1,12 @@
 //! `meshgauge report RESULTS... -o report.html`
 
 use std::collections::{BTreeMap, HashMap};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use meshgauge::Summary;
 use meshgauge::compare::{Comparison, compare};
+#[cfg(feature = "png")]
+use meshgauge::report::figure::Painter;
 use meshgauge::report::page::{self, Content};
 
 use super::ConfigFile;
@@ -41,7 +43,7 @@ pub struct Args {
     #[arg(long, value_name = "LABEL")]
     published: Vec<String>,
 
-    /// Write each figure into this folder too, as SVG.
+    /// Write each figure into this folder too, as SVG and as PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
 
@@ -77,13 +79,32 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
     };
     let mut page = Vec::new();
     page::render(&content, &mut page)?;
-    write(&args.output, &String::from_utf8_lossy(&page))?;
+    write(&args.output, &page)?;
     if let Some(folder) = &args.figures {
-        for figure in page::figures(&content) {
-            write(&folder.join(format!("{}.svg", figure.name)), &figure.scene.to_file(&figure.legend))?;
-        }
+        write_figures(&content, folder)?;
     }
     Ok(Status::Fine)
+}
+
+/// Every figure as a file of its own: SVG, and PNG where this program can draw it.
+fn write_figures(content: &Content, folder: &Path) -> anyhow::Result<()> {
+    #[cfg(feature = "png")]
+    let painter = Painter::new();
+    #[cfg(feature = "png")]
+    if painter.is_none() {
+        tracing::warn!(
+            "figures are written as SVG alone: for PNG a font must be installed, as fonts-dejavu-core"
+        );
+    }
+    for figure in page::figures(content) {
+        let svg = figure.scene.to_file(&figure.legend);
+        write(&folder.join(format!("{}.svg", figure.name)), svg.as_bytes())?;
+        #[cfg(feature = "png")]
+        if let Some(painter) = &painter {
+            write(&folder.join(format!("{}.png", figure.name)), &painter.paint(&svg)?)?;
+        }
+    }
+    Ok(())
 }
 
 /// A mesh, the name that it is paired by, and the results that it comes from.
@@ -151,6 +172,6 @@ fn known(labels: &[String]) -> Result<(), Usage> {
     }
 }
 
-fn write(path: &std::path::Path, text: &str) -> anyhow::Result<()> {
-    publish(path, text).map_err(|e| anyhow::anyhow!("{}: {e}", path.display()))
+fn write(path: &Path, content: &[u8]) -> anyhow::Result<()> {
+    publish(path, content).map_err(|e| anyhow::anyhow!("{}: {e}", path.display()))
 }

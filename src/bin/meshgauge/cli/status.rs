@@ -8,7 +8,7 @@ use serde_json::json;
 use super::ConfigFile;
 use crate::daemon::Places;
 use crate::exit::{self, Usage};
-use crate::status::{Answer, Cause, Health, Status, explain, health, text};
+use crate::status::{Answer, Cause, Health, Status, explain, health, live, text};
 
 /// Tell what a daemon is doing, or why a file has not been scored yet.
 ///
@@ -20,6 +20,10 @@ pub struct Args {
     /// Print JSON, for programs; docs/METRICS.md describes it.
     #[arg(long)]
     json: bool,
+
+    /// Show it as a live screen, drawn anew every second; q ends it.
+    #[arg(long, conflicts_with_all = ["json", "explain"])]
+    watch: bool,
 
     /// Say what keeps this file from being scored.
     #[arg(long, value_name = "PATH")]
@@ -48,6 +52,9 @@ pub fn run(args: &Args) -> anyhow::Result<exit::Status> {
         watch.state.clone_from(state);
     }
     let state = Places::of(&watch).state;
+    if args.watch {
+        return Ok(status_of_health(live(&state)?));
+    }
     let status = Status::read(&state).map_err(|error| Usage(format!("{error:#}")))?;
     let (health, age) = health(&status);
     let mut out = stdout().lock();
@@ -64,12 +71,16 @@ pub fn run(args: &Args) -> anyhow::Result<exit::Status> {
         let whole = json!({ "health": health, "age_seconds": age, "status": status });
         writeln!(out, "{whole}")?;
     } else {
-        write!(out, "{}", text(&status, health, age))?;
+        write!(out, "{}", text(&status, health, age, None))?;
     }
-    Ok(match health {
+    Ok(status_of_health(health))
+}
+
+fn status_of_health(health: Health) -> exit::Status {
+    match health {
         Health::Well | Health::Ended | Health::Elsewhere => exit::Status::Fine,
         Health::Degraded | Health::Hung | Health::Stopped | Health::Dead => exit::Status::Failed,
-    })
+    }
 }
 
 fn status_of_answer(answer: &Answer) -> exit::Status {

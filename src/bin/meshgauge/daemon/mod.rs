@@ -9,6 +9,7 @@ mod done;
 pub mod fields;
 mod finishing;
 mod hints;
+mod keeping;
 mod log;
 mod looking;
 mod mount;
@@ -37,14 +38,12 @@ use std::time::Duration;
 
 use anyhow::Context;
 
-use crate::baseline::Baselines;
 use crate::config::{Config, Watch};
 use crate::exit::{Status, Usage};
 use crate::state::State;
 
 use log::{Event, Log};
 use record::Record;
-use regression::Watchman;
 use telemetry::Telemetry;
 use watching::Watching;
 
@@ -160,13 +159,7 @@ fn start(
     let state = State::open(&places.state)?;
     log.hear_with(telemetry.heard());
     let mut record = Record::new(log, state, places, mode.quiet)?;
-    if config.baseline.compare {
-        record.watch_for_regressions(Watchman {
-            baselines: Baselines::of(&places.state),
-            naming: config.baseline.naming()?,
-            tolerances: config.compare,
-        });
-    }
+    record.configure(config)?;
     if torn > 0 {
         record.event(Event::warn("log.repaired").with("bytes", torn))?;
     }

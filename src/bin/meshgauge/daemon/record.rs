@@ -14,10 +14,12 @@ use super::Places;
 use super::done::Done;
 use super::fields;
 use super::finishing::Verdict;
+use super::keeping::Keeping;
 use super::log::{Event, Log};
 use super::protocol::{Failure, Then};
 use super::regression::Watchman;
-use crate::config;
+use crate::baseline::Baselines;
+use crate::config::{self, Config};
 use crate::identity::Identity;
 use crate::publish;
 use crate::state::{Failed, Id, Stage, State, Tries};
@@ -39,6 +41,7 @@ pub struct Record {
     places: Places,
     quiet: bool,
     watchman: Option<Watchman>,
+    keeping: Option<Keeping>,
 }
 
 impl Record {
@@ -48,14 +51,20 @@ impl Record {
             publish::sweep(&places.results.join(folder));
         }
         let (done, minded, places) = (Done::default(), Instant::now(), places.clone());
-        let record = Self { log, state, done, written: None, minded, places, quiet, watchman: None };
+        let record =
+            Self { log, state, done, written: None, minded, places, quiet, watchman: None, keeping: None };
         record.catch_up()?;
         Ok(record)
     }
 
-    /// Compares each mesh that is scored with its baseline from now on.
-    pub fn watch_for_regressions(&mut self, watchman: Watchman) {
-        self.watchman = Some(watchman);
+    /// What each mesh that is scored is compared with, and for how long its summary is kept, from now on.
+    pub fn configure(&mut self, config: &Config) -> anyhow::Result<()> {
+        let naming = config.baseline.naming()?;
+        let keep = config.history.keep.0;
+        self.keeping = (!keep.is_zero()).then(|| Keeping::new(keep, naming.clone()));
+        let (baselines, tolerances) = (Baselines::of(&self.places.state), config.compare);
+        self.watchman = config.baseline.compare.then_some(Watchman { baselines, naming, tolerances });
+        Ok(())
     }
 
     /// Remembers the outcomes that the log tells and the database may not know of.
@@ -90,6 +99,9 @@ impl Record {
         }
         self.minded = Instant::now();
         self.reopen_log()?;
+        if let Some(keeping) = &mut self.keeping {
+            keeping.forget(&self.state)?;
+        }
         let log = self.places.log.display().to_string();
         if let Some(away) = self.log.rotate_if_due(rules).with_context(|| log)? {
             self.log.append(Event::info("log.rotated").with("to", away.to_string_lossy()))?;
@@ -231,7 +243,11 @@ impl Record {
         self.log_outcome(id, fields::flatten(event, summary).with("summary", place.to_string_lossy()))?;
         self.tell_changes(path, id, summary)?;
         publish::publish(&place, &summary.to_json()).with_context(|| place.display().to_string())?;
-        self.end(id, Stage::Scored, |state| state.score(id, path, summary, file_name(&place)))?;
+        let keeps = self.keeping.is_some();
+        self.end(id, Stage::Scored, |state| {
+            state.score(id, path, summary, file_name(&place))?;
+            if keeps { state.keep_summary(id, summary) } else { Ok(()) }
+        })?;
         self.say(&fields::line(path, summary, &place));
         Ok(())
     }

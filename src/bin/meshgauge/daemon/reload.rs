@@ -13,7 +13,8 @@ impl Watching<'_> {
     /// mesh that is claimed from now on.
     pub(super) fn reload(&mut self) -> anyhow::Result<()> {
         self.service.reloading();
-        let event = match (self.read_config)() {
+        let read = (self.read_config)();
+        let event = match read.and_then(|config| self.record.configure(&config).map(|()| config)) {
             Err(error) => {
                 tracing::error!("the configuration stays as it was: {error:#}");
                 Event::error("config.refused").with("reason", format!("{error:#}"))

@@ -23,6 +23,7 @@ use super::{Mode, Places, ReadConfig};
 use crate::config::Config;
 use crate::exit::Status;
 use crate::folder::Walk;
+use crate::measuring;
 
 /// How long the threads have to let go of their workers when we stop at once.
 const LETTING_GO: Duration = Duration::from_secs(2);
@@ -187,7 +188,7 @@ impl<'c> Watching<'c> {
             if self.bear(claimed)?.is_none() {
                 break;
             }
-            let config = Arc::clone(&self.worker_config);
+            let config = measuring::config_for(&self.worker_config, &next.path);
             let job = Job { path: next.path.clone(), identity: next.identity, config };
             self.pool.give(job, self.tracking.running())?;
             self.tracking.run(&next);

@@ -12,6 +12,7 @@ mod meshes;
 mod path_value;
 mod recovery;
 mod scores;
+mod summaries;
 mod versions;
 
 use std::path::{Path, PathBuf};
@@ -32,7 +33,7 @@ pub use versions::{Failed, Stage, Tries};
 pub const FILE: &str = "state.db";
 
 /// The steps that lead to the present schema; `user_version` counts those that were made.
-const MIGRATIONS: [&str; 1] = [include_str!("schema-1.sql")];
+const MIGRATIONS: [&str; 2] = [include_str!("schema-1.sql"), include_str!("schema-2.sql")];
 
 /// Another program that reads or edits may hold the database this long.
 const PATIENCE: Duration = Duration::from_secs(10);

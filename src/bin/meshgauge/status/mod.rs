@@ -4,6 +4,7 @@
 //! is dead. Times that matter are seconds since the machine's start, which no setting of the clock changes.
 
 mod explain;
+mod live;
 mod process;
 mod text;
 
@@ -19,6 +20,7 @@ use crate::config::Config;
 use crate::path_text::PathText;
 
 pub use explain::{Answer, Cause, explain};
+pub use live::live;
 pub use process::{Health, Process, health};
 pub use text::text;
 

@@ -6,13 +6,18 @@ use std::path::PathBuf;
 use bytesize::ByteSize;
 
 use super::{Health, Running, Status, Watched};
+use crate::daemon::fields::printable;
 use crate::path_text::PathText;
 
 /// So many of the waiting are shown.
 const WAITING: usize = 5;
 
-/// A status for people: how the daemon is, then what it does.
-pub fn text(status: &Status, health: Health, age: Option<f64>) -> String {
+/// Columns beside a bar, and most columns of one.
+const MARGIN: usize = 10;
+const WIDEST: usize = 60;
+
+/// A status for people: how the daemon is, then what it does. On a terminal of so many columns meshes in work have bars.
+pub fn text(status: &Status, health: Health, age: Option<f64>, columns: Option<u16>) -> String {
     let mut out = String::new();
     head(&mut out, status, health, age);
     for watched in &status.watches {
@@ -24,7 +29,7 @@ pub fn text(status: &Status, health: Health, age: Option<f64>) -> String {
         "files    {} at work, {} queued, {} settling, {} to be tried again; the oldest is {:.0} s old",
         q.running, q.queued, q.settling, q.postponed, q.oldest_seconds
     );
-    status.running.iter().for_each(|running| at_work(&mut out, running));
+    status.running.iter().for_each(|running| at_work(&mut out, running, columns));
     for waiting in status.waiting.iter().take(WAITING) {
         let _ = writeln!(out, "  next   {}", shown(&waiting.mesh));
     }
@@ -42,7 +47,8 @@ pub fn text(status: &Status, health: Health, age: Option<f64>) -> String {
     );
     for error in &status.last_errors {
         let mesh = error.mesh.as_ref().map(|mesh| format!("{}: ", shown(mesh))).unwrap_or_default();
-        let _ = writeln!(out, "error    {} {mesh}{}: {}", error.timestamp, error.kind, error.reason);
+        let _ =
+            writeln!(out, "error    {} {mesh}{}: {}", error.timestamp, error.kind, printable(&error.reason));
     }
     out
 }
@@ -97,7 +103,7 @@ fn drop_folder(out: &mut String, watched: &Watched) {
     }
 }
 
-fn at_work(out: &mut String, running: &Running) {
+fn at_work(out: &mut String, running: &Running, columns: Option<u16>) {
     let (done, known) = running.pieces;
     let share = (100 * done).checked_div(known).map(|share| format!(", {share} %")).unwrap_or_default();
     let silent = if running.silent_seconds > 10.0 {
@@ -113,14 +119,19 @@ fn at_work(out: &mut String, running: &Running) {
         running.phase,
         running.seconds
     );
+    if let Some(columns) = columns {
+        let width = usize::from(columns).saturating_sub(MARGIN).min(WIDEST);
+        let filled = (done as f64 / known.max(1) as f64 * width as f64) as usize;
+        let _ = writeln!(
+            out,
+            "         {}{}",
+            "█".repeat(filled.min(width)),
+            "░".repeat(width.saturating_sub(filled))
+        );
+    }
 }
 
 /// A path that may have been named by anybody.
 fn shown(path: &PathText) -> String {
-    let path = PathBuf::from(path.clone());
-    path.display()
-        .to_string()
-        .chars()
-        .map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c })
-        .collect()
+    printable(&PathBuf::from(path.clone()).display().to_string())
 }

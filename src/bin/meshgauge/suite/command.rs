@@ -13,6 +13,8 @@ use crossbeam_channel::{RecvTimeoutError, bounded};
 use rustix::process::{Pid, Signal, kill_process_group};
 use wait4::{ResUse, Wait4};
 
+use super::group::processor_time;
+
 /// What a command may be given besides the suite's own variables.
 const GIVEN: [&str; 3] = ["size", "output", "suite"];
 
@@ -21,6 +23,9 @@ const KEPT: usize = 4096;
 
 /// How often we look whether to stop.
 const PATIENCE: Duration = Duration::from_millis(100);
+
+/// A command that does not use its processor time ends after so many times as long by the clock: it sleeps or hangs.
+const SLEEPY: u32 = 10;
 
 /// How a command ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,7 +64,12 @@ impl Ran {
         let how = match &self.ending {
             Ending::Fine => "printed nothing".to_owned(),
             Ending::Failed(how) => how.clone(),
-            Ending::TimedOut => format!("took over {:.0} s", self.seconds),
+            Ending::TimedOut => {
+                format!(
+                    "took too long: {:.0} s of a processor, {:.0} s in all",
+                    self.cpu_seconds, self.seconds
+                )
+            }
             Ending::Stopped => "was stopped".to_owned(),
         };
         match last(&self.complained).or_else(|| last(&self.printed)) {
@@ -105,7 +115,8 @@ pub fn fill(command: &[String], variables: &BTreeMap<String, String>, given: &[(
     command.iter().map(fill).collect()
 }
 
-/// Runs a command in a folder. It is killed, with the processes that it started, when its time is over or `stop` is set.
+/// Runs a command in a folder. It is killed, with the processes that it started, when the limit is over and they had a
+/// processor for as long, so that a busy machine costs nobody a mesh; or when `stop` is set.
 /// An error means that it could not be started.
 pub fn run(words: &[String], folder: &Path, limit: Duration, stop: &AtomicBool) -> io::Result<Ran> {
     let started = Instant::now();
@@ -137,7 +148,7 @@ pub fn run(words: &[String], folder: &Path, limit: Duration, stop: &AtomicBool) 
                 killed = if stop.load(Ordering::Relaxed) {
                     Some(Ending::Stopped)
                 } else {
-                    (started.elapsed() > limit).then_some(Ending::TimedOut)
+                    is_over(group, started, limit).then_some(Ending::TimedOut)
                 };
             }
             if killed.is_some() {
@@ -159,6 +170,11 @@ pub fn run(words: &[String], folder: &Path, limit: Duration, stop: &AtomicBool) 
             complained: text(complained),
         })
     })
+}
+
+fn is_over(group: Pid, started: Instant, limit: Duration) -> bool {
+    let elapsed = started.elapsed();
+    elapsed > limit.saturating_mul(SLEEPY) || (elapsed > limit && processor_time(group) > limit)
 }
 
 fn ending(status: ExitStatus) -> Ending {
@@ -206,6 +222,9 @@ mod tests {
         let slow = shell("sleep 60 & sleep 60", 0.2);
         assert_eq!(slow.ending, Ending::TimedOut);
         assert!(slow.seconds < 30.0);
+        let busy = shell("(while :; do :; done) & while :; do :; done", 0.5);
+        assert_eq!(busy.ending, Ending::TimedOut);
+        assert!(busy.told().contains("took too long"), "{}", busy.told());
         // A child that is left behind keeps nobody waiting.
         assert!(shell("sleep 60 &", 30.0).seconds < 30.0);
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
+use meshgauge::report::page::published_labels;
 use serde::Deserialize;
 
 use super::command::{self, Ending};
@@ -16,7 +17,7 @@ use crate::quantity::Span;
 pub struct Suite {
     /// What stands over the tables.
     pub title: String,
-    /// Longest time that one run of a generator may take.
+    /// Longest time that one run of a generator may take, of the processor; ten times as long by the clock.
     pub timeout: Span,
     /// Most runs of a generator on a problem until the number of nodes is in the window.
     #[serde(default = "tries")]
@@ -52,6 +53,9 @@ pub struct Problem {
     pub nodes: Option<[u64; 2]>,
     /// The first element size to try.
     pub size: f64,
+    /// Labels of meshes of the report of 2007 whose rows stand under those of today.
+    #[serde(default)]
+    pub published: Vec<String>,
 }
 
 /// A mesh generator.
@@ -126,6 +130,13 @@ impl Suite {
             }
             if !(problem.size.is_finite() && problem.size > 0.0) {
                 return Err(format!("problem {}: size must be over 0", problem.name));
+            }
+            let known = published_labels();
+            if let Some(label) = problem.published.iter().find(|label| !known.contains(&label.as_str())) {
+                let (name, known) = (&problem.name, known.join(", "));
+                return Err(format!(
+                    "problem {name}: the report of 2007 has no mesh \"{label}\", only {known}"
+                ));
             }
             if problem.nodes.is_some_and(|[least, most]| least > most || most == 0) {
                 return Err(format!("problem {}: nodes must be [fewest, most]", problem.name));

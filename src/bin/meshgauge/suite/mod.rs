@@ -6,6 +6,7 @@
 
 mod command;
 mod definition;
+mod group;
 mod row;
 mod tables;
 mod trial;

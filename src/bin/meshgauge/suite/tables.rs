@@ -40,7 +40,7 @@ fn by_problem(
         writeln!(out, "{heading}{}\n", problem.title)?;
         show(&runs(here.iter().map(|(row, _)| row)), out)?;
         let summaries: Vec<Summary> = here.iter().filter_map(|(_, summary)| summary.clone()).collect();
-        Grid::of_measures(&summaries).iter().try_for_each(|grid| show(grid, out))?;
+        Grid::of_measures(&summaries, &problem.published).iter().try_for_each(|grid| show(grid, out))?;
     }
     Ok(())
 }

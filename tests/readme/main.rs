@@ -1,6 +1,9 @@
-//! The README lists what there is: every format, every measure.
+//! The README lists what there is, every format, every measure; and what its commands print is what stands there.
 
 #![expect(clippy::disallowed_methods, reason = "the project's own small files")]
+
+#[cfg(feature = "program")]
+mod story;
 
 use meshgauge::formats::FORMATS;
 use meshgauge::measures::measures;
