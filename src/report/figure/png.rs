@@ -3,10 +3,10 @@
 //! No font is part of the program. Letters are those of DejaVu Sans, Liberation Sans or Arial where one is installed, else of
 //! any font; where there is none at all there is no PNG, because a figure without its numbers tells nothing.
 
+use std::io;
+
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
-
-use crate::error::{Error, Result};
 
 /// Pixels of the PNG a pixel of the SVG: sharp on paper and on the screens of today.
 const SCALE: f32 = 2.0;
@@ -40,15 +40,14 @@ impl Painter {
     ///
     /// # Errors
     /// Where it is no SVG, or larger than memory.
-    pub fn paint(&self, svg: &str) -> Result<Vec<u8>> {
-        let tree =
-            Tree::from_str(svg, &self.options).map_err(|e| Error::malformed("an SVG file", e.to_string()))?;
+    pub fn paint(&self, svg: &str) -> io::Result<Vec<u8>> {
+        let tree = Tree::from_str(svg, &self.options).map_err(io::Error::other)?;
         let size = tree.size();
         let pixels = |length: f32| (length * SCALE).ceil() as u32;
         let mut picture = Pixmap::new(pixels(size.width()), pixels(size.height()))
-            .ok_or_else(|| Error::limit("the size of a picture", "2^31 bytes"))?;
+            .ok_or_else(|| io::Error::other("the figure is too large for a picture"))?;
         resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut picture.as_mut());
-        picture.encode_png().map_err(|e| Error::malformed("a picture", e.to_string()))
+        picture.encode_png().map_err(io::Error::other)
     }
 }
 
