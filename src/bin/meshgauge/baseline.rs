@@ -38,7 +38,7 @@ impl Baselines {
     /// Makes a summary the baseline of a part.
     pub fn accept(&self, part: &Path, summary: &Summary) -> anyhow::Result<()> {
         let path = self.path(part);
-        publish(&path, &summary.to_json()).map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))
+        publish(&path, summary.to_json()).map_err(|error| anyhow::anyhow!("{}: {error}", path.display()))
     }
 
     fn path(&self, part: &Path) -> PathBuf {

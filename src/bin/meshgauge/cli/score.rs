@@ -232,7 +232,7 @@ pub fn run(args: &Args, config: &Config) -> anyhow::Result<Status> {
                         let name = format!("{}{}", summary.mesh.name, names::SUFFIX);
                         args.out.clone().unwrap_or_default().join(name)
                     });
-                    publish(&place, &summary.to_json())
+                    publish(&place, summary.to_json())
                         .map_err(|e| anyhow::anyhow!("{}: {e}", place.display()))?;
                 }
                 if let Some(output) = &mut output {

@@ -242,7 +242,7 @@ impl Record {
         let event = Event::info("mesh.scored").mesh(path).with("id", id.to_string()).with("seconds", seconds);
         self.log_outcome(id, fields::flatten(event, summary).with("summary", place.to_string_lossy()))?;
         self.tell_changes(path, id, summary)?;
-        publish::publish(&place, &summary.to_json()).with_context(|| place.display().to_string())?;
+        publish::publish(&place, summary.to_json()).with_context(|| place.display().to_string())?;
         let keeps = self.keeping.is_some();
         self.end(id, Stage::Scored, |state| {
             state.score(id, path, summary, file_name(&place))?;

@@ -1,7 +1,7 @@
 //! Whole summaries of past scores, and which of them stood at a time.
 
 use std::collections::{BTreeMap, HashSet};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -121,10 +121,10 @@ impl State {
         let Some(row) = rows.next()? else { return Ok(None) };
         let packed: Vec<u8> = row.get(0)?;
         let of_version = || format!("the summary of version {}", version.unwrap_or_default());
-        let mut json = String::new();
+        let mut json = Vec::new();
         let frame = zstd::stream::read::Decoder::new(&packed[..]).with_context(of_version)?;
-        frame.take(LARGEST).read_to_string(&mut json).with_context(of_version)?;
-        let read = Summary::read_all(&json).with_context(of_version)?;
+        io::copy(&mut frame.take(LARGEST), &mut json).with_context(of_version)?;
+        let read = Summary::read_all(&String::from_utf8_lossy(&json)).with_context(of_version)?;
         Ok(read.into_iter().next())
     }
 }

@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use rustix::process::Pid;
 
+use crate::config_file;
+
 /// Processor time of the processes of a group, and of those children of theirs that have ended.
 pub fn processor_time(group: Pid) -> Duration {
     let Ok(processes) = fs::read_dir("/proc") else { return Duration::ZERO };
@@ -16,7 +18,7 @@ pub fn processor_time(group: Pid) -> Duration {
 /// Clock ticks of a process, if it is one of the group.
 fn ticks(process: &Path, group: Pid) -> Option<u64> {
     let numbered = process.file_name()?.as_encoded_bytes().iter().all(u8::is_ascii_digit);
-    let stat = if numbered { fs::read_to_string(process.join("stat")).ok()? } else { return None };
+    let stat = if numbered { config_file::read(&process.join("stat")).ok()? } else { return None };
     ticks_in(&stat, group.as_raw_nonzero().get())
 }
 

@@ -276,7 +276,7 @@ impl Trial<'_> {
         let place = self.file(SUFFIX);
         match summary {
             Some(summary) => {
-                publish(&place, &summary.to_json()).with_context(|| place.display().to_string())?
+                publish(&place, summary.to_json()).with_context(|| place.display().to_string())?
             }
             None => {
                 let _ = fs::remove_file(&place);
