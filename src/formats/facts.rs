@@ -74,12 +74,14 @@ static FACTS: &[Facts] = &[
             "parts with any number of instances, moved and turned; nodes and elements inside an instance; decks with parts and no instance",
             "*SYSTEM, and *NODE in cylindrical and spherical coordinates",
             "*NGEN (lines, arcs), *NFILL, *NCOPY (shift, reflect), *ELGEN and *ELCOPY, with the node and element sets that they name",
+            "*PARAMETER: numbers, arithmetic and functions, put in where their names stand",
             "records over several lines with or without a comma at the end, blanks anywhere, D exponents, comments within data",
             "types by their grammar (C3D8RH, CPE4T, ...), CalculiX's own types, user elements counted by name",
         ],
         refused: &[
             "*NGEN with LINE=P or SYSTEM, *NFILL with BIAS, SINGULAR or TWO STEP, *NCOPY with POLE or MULTIPLE, *ELCOPY with REFLECT",
-            "*NMAP, *IMPORT, instances of other analyses, values by *PARAMETER in nodes and elements",
+            "*NMAP, *IMPORT, *PARAMETER SHAPE VARIATION, instances of other analyses",
+            "a *PARAMETER that is no plain arithmetic, where it is used",
             "abbreviated keywords that make the mesh, text in UTF-16",
         ],
         proof: &["Abaqus/CAE", "CalculiX test suite", "Cubit", "Gmsh", "pyNastran's models"],
@@ -89,17 +91,22 @@ static FACTS: &[Facts] = &[
         quirks: &[
             "wedges in the order before and after VTK 9.7: judged by their own majority",
             "offsets of 5.1 and counts before it, METADATA, vtkidtype and vtktypeint64, triangle strips, voxels and pixels",
+            "structured, rectilinear and uniform grids: their hexahedra and quadrilaterals; hidden and ghost cells are left out and counted",
         ],
-        refused: &["structured, rectilinear and image data; fields without a mesh"],
+        refused: &["fields without a mesh"],
         proof: &["VTK 9.7", "Gmsh", "MFEM", "meshio", "PyVista's examples", "the crate vtkio"],
     },
     Facts {
         format: "vtu",
         quirks: &[
+            "unstructured, polygonal, structured, rectilinear and image data; files that name their pieces or blocks (.pvtu, .vtm, .pvd ...) are one mesh, of several time steps the first",
+            "hidden cells, and ghosts of other pieces, are left out and counted",
             "several pieces in a file; header types of 32 and 64 bits; base64 with its header apart; blocks of any size",
             "wedges in the order before and after VTK 9.7: judged by their own majority",
         ],
-        refused: &["PVTU (score the pieces), PolyData, structured and multi-block XML files, by their type"],
+        refused: &[
+            "tables, hyper-tree grids and grids of adaptive refinement, by their type; files outside the mesh's own folder",
+        ],
         proof: &["VTK 9.7", "ParaView by MFEM", "meshio", "the crate vtkio"],
     },
     Facts {

@@ -29,6 +29,8 @@ pub struct Ledger {
     pub missing_nodes: u64,
     /// Measured elements that name one corner node twice.
     pub repeated_nodes: u64,
+    /// Elements that another part of the mesh has as its own, or that the file hides; they were left out.
+    pub ghost_elements: u64,
 }
 
 /// How many elements of a type were met.
@@ -66,6 +68,7 @@ impl Ledger {
         }
         self.missing_nodes += other.missing_nodes;
         self.repeated_nodes += other.repeated_nodes;
+        self.ghost_elements += other.ghost_elements;
     }
 }
 
@@ -249,6 +252,12 @@ impl<'a> ElementSink<'a> {
     /// [`Self::element`].
     pub fn mark_used(&mut self, ids: &[u64]) {
         ids.iter().filter_map(|id| self.nodes.row(*id)).for_each(|row| self.nodes.mark_used(row));
+    }
+
+    /// Leaves out an element that is another part's, which has it too, or that the file hides.
+    #[inline]
+    pub fn ghost(&mut self) {
+        self.ledger.ghost_elements += 1;
     }
 
     /// Counts elements of a type that is not measured, where their nodes are not known.

@@ -261,6 +261,7 @@ fn checks(found: &Found<'_>, reversed: &Reversed) -> Checks {
     let mut checks = Checks {
         missing_nodes: ledger.missing_nodes,
         repeated_nodes: ledger.repeated_nodes,
+        ghost_elements: ledger.ghost_elements,
         unused_nodes: found.nodes.unused(),
         duplicate_elements: found.merged.duplicate_elements,
         coincident_nodes: found.merged.coincident_nodes,

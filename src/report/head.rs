@@ -127,6 +127,7 @@ fn findings(checks: &Checks) -> String {
         ),
         (checks.concave_faces, "concave face", "concave faces"),
         (checks.crossed_faces, "crossed face", "crossed faces"),
+        (checks.ghost_elements, "ghost element left out", "ghost elements left out"),
         (checks.duplicate_elements.unwrap_or(0), "duplicate element", "duplicate elements"),
         (checks.coincident_nodes.unwrap_or(0), "coincident node", "coincident nodes"),
     ];

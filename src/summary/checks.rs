@@ -8,7 +8,11 @@ macro_rules! checks {
         /// Number of findings of each check.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
         pub struct Checks {
-            $($(#[$doc])* pub $name: u64,)+
+            $(
+                $(#[$doc])*
+                #[serde(default)]
+                pub $name: u64,
+            )+
             $(
                 $(#[$costly_doc])*
                 #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -52,6 +56,8 @@ checks! {
         concave_faces,
         /// Quadrilateral faces two of whose sides cross.
         crossed_faces,
+        /// Elements that another partition has as its own, or that the file hides; they were left out.
+        ghost_elements,
     }
     costly {
         /// Measured elements that have the shape and the corners of another that is counted already.

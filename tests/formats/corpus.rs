@@ -66,7 +66,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("abaqus/synthetic_torture/nodes_b.inp", "expected a mesh of a known format"),
     ("nastran/include_mode_solid_shell_bar.bdf", "included file \"geom.inc\""),
     ("cgns/gmsh_tut21.cgns", "ADF container is not read"),
-    ("vtu/vtkio_hexahedron_parallel.pvtu", "score the pieces"),
+    ("vtu/vtkio_hexahedron_parallel.pvtu", "included file \"hexahedron_parallel_0.vtu\""),
 ];
 
 /// Known formats among what is no mesh: a file that its writer did not end.

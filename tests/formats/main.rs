@@ -44,6 +44,9 @@ const ALL: Shapes =
 const DEGENERATE: Shapes =
     &[(Triangle, 1), (Quadrilateral, 1), (Tetrahedron, 2), (Pyramid, 1), (Wedge, 1), (Hexahedron, 2)];
 
+/// Folders of what other files name.
+const PARTS: [&str; 2] = ["blocks", "pieces"];
+
 /// Format, file, nodes, measured elements, elements that no measure is defined for.
 const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("abaqus", "gmsh_pit2d_o2.inp", 821, PIT, 56),
@@ -95,6 +98,12 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("vtu", "linear_inline_lzma.vtu", 55, LINEAR, 0),
     ("vtu", "linear_inline_none.vtu", 55, LINEAR, 0),
     ("vtu", "linear_raw_none.vtu", 55, LINEAR, 0),
+    ("vtu", "blocks.vtm", 55, &[(Triangle, 1), (Quadrilateral, 1), (Hexahedron, 6)], 6),
+    ("vtu", "hidden.vts", 36, &[(Hexahedron, 9)], 0),
+    ("vtu", "pieces.pvtu", 51, &[(Hexahedron, 10)], 0),
+    ("vtu", "planes.vtr", 24, &[(Hexahedron, 6)], 0),
+    ("vtu", "surface.vtp", 25, &[(Triangle, 1), (Quadrilateral, 1)], 6),
+    ("vtu", "turned.vti", 36, &[(Hexahedron, 12)], 0),
     ("femgv", "two_shapes.neu", 7, &[(Quadrilateral, 1), (Tetrahedron, 1)], 2),
     ("frd", "two_shapes.frd", 9, &[(Tetrahedron, 1), (Hexahedron, 1)], 1),
     ("unv", "gmsh_mixed.unv", 54, MIXED, 0),
@@ -151,6 +160,7 @@ fn every_format_has_real_meshes_with_known_counts() {
         let names = entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
         let meshes: BTreeSet<_> = names
             .filter(|name| ![".jsonl", ".node", ".h5"].iter().any(|ending| name.ends_with(ending)))
+            .filter(|name| !PARTS.contains(&name.as_str()))
             .collect();
         let rows = OWN.iter().filter(|row| row.0 == format.name());
         assert_eq!(meshes, rows.map(|row| row.1.to_owned()).collect(), "{}", format.name());
@@ -174,7 +184,8 @@ fn the_content_decides_whatever_the_name_says() {
     for (format, name, nodes, ..) in OWN.iter().filter(|row| !folder(row.0).join(row.1).is_dir()) {
         let bytes = fs::read(folder(format).join(name)).expect("readable");
         // The nodes of these stand in a file of the same name.
-        let has_companion = matches!(*format, "triangle" | "tetgen") || name.contains("hdf.xdmf");
+        let has_companion = matches!(*format, "triangle" | "tetgen")
+            || [".pvtu", ".vtm", "hdf.xdmf"].iter().any(|ending| name.ends_with(ending));
         let wrong_names: &[&str] = if has_companion { &[] } else { &["x.inp", "x.txt", "x.msh.gz", "x"] };
         for wrong in wrong_names {
             let path = elsewhere.path().join(wrong);

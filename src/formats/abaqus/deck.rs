@@ -9,6 +9,7 @@ use super::elements::{MOST_NODES, cut_at_records};
 use super::fields::Fields;
 use super::keywords::{Keyword, plain};
 use super::make::{Command, Noted, SetHead};
+use super::parameters::Parameters;
 use super::placement::{Affine, Placement, System};
 use super::points::{Row, frame, motion, points};
 use super::types::{self, Kind};
@@ -17,7 +18,7 @@ use crate::formats::{Outline, text};
 use crate::input::{Input, Source, Spot};
 
 /// Keywords that move nodes, or fetch a mesh from elsewhere.
-const UNEXPANDED: [&str; 3] = ["NMAP", "IMPORT", "SYMMETRICMODELGENERATION"];
+const UNEXPANDED: [&str; 4] = ["NMAP", "IMPORT", "SYMMETRICMODELGENERATION", "PARAMETERSHAPEVARIATION"];
 /// Keywords that the mesh hangs on: their abbreviations are refused rather than skipped.
 const SPELLED_OUT: [&str; 6] = ["NODE", "ELEMENT", "INCLUDE", "INSTANCE", "PART", "SYSTEM"];
 
@@ -25,6 +26,8 @@ const SPELLED_OUT: [&str; 6] = ["NODE", "ELEMENT", "INCLUDE", "INSTANCE", "PART"
 pub(super) struct Deck<'a> {
     input: &'a Input,
     out: &'a mut dyn Outline,
+    /// Values of `*PARAMETER`.
+    pub(super) parameters: Parameters,
     /// Types by name, user elements among them.
     kinds: HashMap<String, Kind>,
     parts: Vec<Part>,
@@ -99,6 +102,7 @@ impl<'a> Deck<'a> {
         Self {
             input,
             out,
+            parameters: Parameters::default(),
             kinds: HashMap::new(),
             parts: Vec::new(),
             part_names: HashMap::new(),
@@ -112,6 +116,11 @@ impl<'a> Deck<'a> {
             place: None,
             seen: Seen::default(),
         }
+    }
+
+    /// A file with the values of parameters in place from byte `from` on.
+    pub(super) fn put_in_parameters(&mut self, source: &Source, from: u64) -> Result<Arc<Source>> {
+        self.parameters.put_in(self.input, source, from)
     }
 
     /// Takes in a keyword line.

@@ -2,9 +2,9 @@
 //!
 //! A flat deck yields its pieces as they are found. Parts wait for their instances: numbers begin anew in every part,
 //! so that a node is known by its instance (bits 40 and up) and its own number. What is read: `*NODE` with its systems,
-//! `*SYSTEM`, `*ELEMENT`, `*USER ELEMENT`, `*PART`, `*ASSEMBLY`, `*INSTANCE`, `*INCLUDE` and `INPUT=`. Keywords that make
-//! nodes or elements out of others are expanded (`make`) or refused by name; every other keyword is no mesh and is skipped
-//! with its data.
+//! `*SYSTEM`, `*ELEMENT`, `*USER ELEMENT`, `*PART`, `*ASSEMBLY`, `*INSTANCE`, `*INCLUDE`, `INPUT=` and `*PARAMETER`. Keywords
+//! that make nodes or elements out of others are expanded (`make`) or refused by name; every other keyword is no mesh and is
+//! skipped with its data.
 
 mod assembly;
 mod deck;
@@ -14,12 +14,15 @@ mod fields;
 mod keywords;
 mod make;
 mod nodes;
+mod parameters;
 mod placement;
 mod points;
 mod types;
 
 #[cfg(test)]
 mod tests;
+
+use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::{Format, HEAD_BYTES, Outline};
@@ -70,16 +73,42 @@ impl Format for Abaqus {
 }
 
 /// Reads a file of the deck. The data before its first keyword belong to the last keyword of the file that includes it.
+/// Whenever parameters were given values the rest is read with these in place.
 fn read(deck: &mut Deck<'_>, siblings: &mut Siblings<'_>, file: &Sibling) -> Result<()> {
-    let source = &file.source;
+    let mut source = Arc::clone(&file.source);
+    let mut from = start(&source);
+    let mut has_values = deck.parameters.changes() > 0;
+    loop {
+        if has_values {
+            source = deck.put_in_parameters(&source, from)?;
+        }
+        match read_from(deck, siblings, (file, &source), from, has_values)? {
+            Some(at) => (from, has_values) = (at, true),
+            None => return Ok(()),
+        }
+    }
+}
+
+/// Reads a file from byte `at` on, up to its end or the place from which on parameters have new values; `has_values` says
+/// that their values are in place up to the next include.
+fn read_from(
+    deck: &mut Deck<'_>,
+    siblings: &mut Siblings<'_>,
+    (file, source): (&Sibling, &Arc<Source>),
+    mut at: u64,
+    has_values: bool,
+) -> Result<Option<u64>> {
     let mut scanner = Scanner::new(source);
-    let mut at = start(source);
     loop {
         let star = scanner.next(at);
         deck.data(source, at..star.unwrap_or(source.len()))?;
-        let Some(star) = star else { return Ok(()) };
+        let Some(star) = star else { return Ok(None) };
         let keyword = Keyword::read(source, star, siblings.limits())?;
         at = keyword.end;
+        let place = |e: Error| source.place(e, Spot::Text(star));
+        if keyword.name == "PARAMETER" && !has_values {
+            return Ok(Some(star));
+        }
         let includes = keyword.name == "INCLUDE";
         if !includes {
             deck.keyword(&keyword, source)?;
@@ -87,7 +116,6 @@ fn read(deck: &mut Deck<'_>, siblings: &mut Siblings<'_>, file: &Sibling) -> Res
         if !includes && !matches!(keyword.name.as_str(), "NODE" | "ELEMENT") {
             continue;
         }
-        let place = |e: Error| source.place(e, Spot::Text(star));
         match keyword.input() {
             Some(name) => {
                 let named = siblings.open(file, &name).map_err(place)?;
@@ -95,6 +123,9 @@ fn read(deck: &mut Deck<'_>, siblings: &mut Siblings<'_>, file: &Sibling) -> Res
                     read(deck, siblings, &named)?;
                 } else {
                     deck.data(&named.source, start(&named.source)..named.source.len())?;
+                }
+                if deck.parameters.changes() > 0 {
+                    return Ok(Some(at));
                 }
             }
             None if includes => {

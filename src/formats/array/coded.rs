@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::elements::NodeRange;
+use super::regions::InRegions;
 use super::{Array, Reader};
 use crate::error::{Error, Result};
 use crate::formats::{ElementLayout, ElementSink, Outline, PIECE_BYTES, Piece};
@@ -43,6 +44,7 @@ pub struct Coded {
     /// The number of the first element.
     first: u64,
     range: NodeRange,
+    regions: InRegions,
 }
 
 /// An element of the stream.
@@ -59,15 +61,15 @@ impl Coded {
     /// Walks through `count` elements, checks that they fill the stream, and hands them out, cut into pieces.
     pub fn outline(
         file: &Arc<Source>,
-        stream: Array,
-        heads: Heads,
-        count: u64,
-        first: u64,
+        (stream, heads): (Array, Heads),
+        (first, count): (u64, u64),
         range: NodeRange,
+        regions: InRegions,
         out: &mut dyn Outline,
     ) -> Result<()> {
-        let mut coded = Self { file: Arc::clone(file), stream, heads, starts: Vec::new(), first, range };
-        coded.walk(count).map_err(|(error, at)| file.place(error, coded.stream.spot(at)))?;
+        let file = Arc::clone(file);
+        let mut coded = Self { file, stream, heads, starts: Vec::new(), first, range, regions };
+        coded.walk(count).map_err(|(error, at)| coded.file.place(error, coded.stream.spot(at)))?;
         let cuts: Vec<u64> = coded.starts.iter().map(|start| start.0).collect();
         let layout: Arc<dyn ElementLayout> = Arc::new(coded);
         for (k, start) in cuts.iter().enumerate() {
@@ -186,8 +188,12 @@ impl ElementLayout for Coded {
         let known = self.starts.binary_search_by_key(&span.start, |start| start.0);
         let mut at = known.map_or(0, |k| self.starts[k].1);
         let (mut heads, mut nodes) = (Reader::new(&self.stream), Reader::new(&self.stream));
-        for element in span {
+        let regions = self.regions.begin(span.clone(), out)?;
+        for (k, element) in span.enumerate() {
             let label = self.first + element;
+            if let Some(region) = regions.get(k) {
+                self.regions.enter(*region, out)?;
+            }
             out.at = self.stream.spot(at);
             let found = self.element(&mut heads, at, label)?;
             self.list(&mut nodes, found.nodes.clone(), label, Some(found.kind), out)?;

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Array;
+use super::regions::InRegions;
 use super::table::Table;
 use crate::error::{Error, Result};
 use crate::formats::binary::cut_records;
@@ -24,6 +25,8 @@ pub struct Elements {
     pub labels: Labels,
     /// Which nodes are meant.
     pub range: NodeRange,
+    /// Which regions they are in.
+    pub regions: InRegions,
 }
 
 /// The elements' own numbers.
@@ -89,9 +92,13 @@ impl ElementLayout for Elements {
             Labels::From(first) => labels.extend(span.clone().map(|k| first + k)),
             Labels::Listed(array) => array.integers(span.clone(), &mut labels),
         }
+        let regions = self.regions.begin(span.clone(), out)?;
         let records = ids.chunks_exact_mut(self.nodes.width());
-        for ((element, record), label) in span.zip(records).zip(labels) {
+        for (k, ((element, record), label)) in span.zip(records).zip(labels).enumerate() {
             out.at = self.nodes.spot(element);
+            if let Some(region) = regions.get(k) {
+                self.regions.enter(*region, out)?;
+            }
             self.range.resolve(label, record)?;
             out.element(label, &self.kind, record)?;
         }

@@ -3,6 +3,8 @@
 pub mod coded;
 pub mod elements;
 pub mod nodes;
+pub mod regions;
+pub mod structured;
 pub mod table;
 
 use std::ops::Range;
@@ -122,6 +124,13 @@ pub struct Stores {
 }
 
 impl Stores {
+    /// An array of no numbers.
+    pub fn nothing(&self) -> Array {
+        let (number, endian) = (Number::U8, Endian::Little);
+        let stored = Stored { origin: Origin::File, at: 0, number, endian, count: 0 };
+        Array { source: Arc::clone(&self.file), stored, file: None }
+    }
+
     /// The array that was stored.
     pub fn array(&self, stored: Stored, name: &str) -> Result<Array> {
         let source = if matches!(stored.origin, Origin::File) { &self.file } else { &self.scratch };

@@ -5,7 +5,6 @@
 //! implies its hexahedra or quadrilaterals. Vertices count from 1 in each zone. The older container, ADF, is refused by
 //! name.
 
-mod block;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -54,6 +53,10 @@ impl Format for Cgns {
         let head = input.source.peek(0..HEAD_BYTES as u64);
         let has_version = |file: Hdf5| Ok(file.root()?.group(VERSION)?.is_some());
         self.detect(head) || hdf5::detect(head) && Hdf5::open(input).and_then(has_version).unwrap_or(false)
+    }
+
+    fn regions(&self) -> Option<&'static str> {
+        Some("sections, and structured zones")
     }
 
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {

@@ -3,6 +3,7 @@
 use std::sync::{Arc, LazyLock};
 
 use crate::formats::array::coded::Head;
+use crate::formats::array::structured::Kinds;
 use crate::mesh::{ElementType, Shape};
 
 /// Elements of several types, each with its code.
@@ -64,6 +65,17 @@ static POLYGON: LazyLock<Arc<ElementType>> =
     LazyLock::new(|| Arc::new(ElementType::counted("NGON_n", "polygon", 0)));
 static POLYHEDRON: LazyLock<Arc<ElementType>> =
     LazyLock::new(|| Arc::new(ElementType::counted("NFACE_n", "polyhedron", 0)));
+
+static STRUCTURED: LazyLock<Kinds> = LazyLock::new(|| Kinds {
+    line: Arc::new(ElementType::counted("structured BAR_2", "line", 2)),
+    quadrilateral: Arc::new(ElementType::measured("structured QUAD_4", Shape::Quadrilateral, 1, 4)),
+    hexahedron: Arc::new(ElementType::measured("structured HEXA_8", Shape::Hexahedron, 1, 8)),
+});
+
+/// The types of cells of structured zones.
+pub(super) fn structured() -> &'static Kinds {
+    &STRUCTURED
+}
 
 /// The type with that code whose elements all have as many nodes.
 pub(super) fn find(code: u64) -> Option<&'static Arc<ElementType>> {

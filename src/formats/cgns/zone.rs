@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::block::Block;
 use super::tree::{child, children, data, data_of, integers, text};
 use super::types;
 use crate::error::{Error, Result};
@@ -10,6 +9,8 @@ use crate::formats::Outline;
 use crate::formats::array::coded::{Coded, Heads};
 use crate::formats::array::elements::{Elements, Labels, NodeRange, UsedNodes};
 use crate::formats::array::nodes::Coordinates;
+use crate::formats::array::regions::InRegions;
+use crate::formats::array::structured;
 use crate::formats::array::table::Table;
 use crate::formats::array::{Stored, Stores, Unpacked};
 use crate::formats::hdf5::Group;
@@ -28,6 +29,7 @@ pub(super) struct First {
 
 /// A zone whose arrays are found.
 pub(super) struct Zone {
+    name: String,
     vertices: u64,
     coordinates: Vec<Stored>,
     cells: Cells,
@@ -81,7 +83,7 @@ impl Zone {
             sections.sort_by_key(|section| section.first);
             Cells::Sections(sections)
         };
-        Ok(Self { vertices: count, coordinates, cells })
+        Ok(Self { name: zone.name().to_owned(), vertices: count, coordinates, cells })
     }
 
     pub(super) fn outline(self, stores: &Stores, first: &mut First, out: &mut dyn Outline) -> Result<()> {
@@ -94,9 +96,21 @@ impl Zone {
         let within = first.several.then_some((1, self.vertices));
         let range = NodeRange { offset: first.node - 1, within };
         match self.cells {
-            Cells::Structured(vertices) => Block::outline(file, &vertices, first.node, out)?,
+            Cells::Structured(vertices) => {
+                let regions = InRegions::named(self.name);
+                let (axes, first, ghosts) = (vertices, (first.node, 1), None);
+                let cells = structured::Cells { file, axes, first, regions, ghosts };
+                cells.outline(types::structured(), out)?;
+            }
             Cells::Sections(sections) => {
-                sections.into_iter().try_for_each(|section| section.outline(stores, range, out))?;
+                for section in sections {
+                    // Zones of one file may well name their sections alike.
+                    let name = match first.several {
+                        true => format!("{}/{}", self.name, section.name),
+                        false => section.name.clone(),
+                    };
+                    section.outline(stores, range, InRegions::named(name), out)?;
+                }
             }
         }
         first.node += self.vertices;
@@ -155,20 +169,27 @@ impl Section {
         Ok(Self { name: section.name().to_owned(), code, first, count, connectivity, has_offsets })
     }
 
-    fn outline(self, stores: &Stores, range: NodeRange, out: &mut dyn Outline) -> Result<()> {
+    fn outline(
+        self,
+        stores: &Stores,
+        range: NodeRange,
+        regions: InRegions,
+        out: &mut dyn Outline,
+    ) -> Result<()> {
         let file = Arc::clone(&stores.file);
+        let elements = (self.first, self.count);
         let connectivity = stores.array(self.connectivity, &self.name)?;
         let place = |error| Err(file.place(error, connectivity.spot(0)));
         match self.code {
             types::MIXED => {
                 let heads = Heads::Codes(types::head);
-                Coded::outline(&file, connectivity, heads, self.count, self.first, range, out)
+                Coded::outline(&file, (connectivity, heads), elements, range, regions, out)
             }
             types::NFACE => out.count(types::polyhedron(), self.count),
             // Before version 3.4 a count stood before each list.
             types::NGON if !self.has_offsets => {
                 let heads = Heads::Counts(types::polygon());
-                Coded::outline(&file, connectivity, heads, self.count, self.first, range, out)
+                Coded::outline(&file, (connectivity, heads), elements, range, regions, out)
             }
             types::NGON => {
                 out.count(types::polygon(), self.count)?;
@@ -186,7 +207,7 @@ impl Section {
                 }
                 let (kind, labels) = (Arc::clone(kind), Labels::From(self.first));
                 let nodes = Table::Rows(connectivity, kind.nodes);
-                Elements { file, kind, nodes, labels, range }.outline(out)
+                Elements { file, kind, nodes, labels, range, regions }.outline(out)
             }
         }
     }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::entities::Entities;
 use crate::error::{Error, Result};
 use crate::formats::binary::Endian;
 use crate::formats::words::Words;
@@ -81,6 +82,10 @@ pub(super) struct Elements {
     pub(super) mesh: u64,
     /// The number of the first element.
     pub(super) first: u64,
+    /// Its place among those of its type.
+    pub(super) row: u64,
+    /// The geometric entities that the elements lie in.
+    pub(super) entities: Arc<Entities>,
 }
 
 impl ElementLayout for Elements {
@@ -92,11 +97,16 @@ impl ElementLayout for Elements {
         let window = self.source.window(span.clone());
         let mut ids = vec![0; self.kind.nodes];
         let mut label = self.first;
+        // An element takes two bytes a node at the least.
+        let most = window.len() / (2 * self.kind.nodes).max(1) + 1;
+        let numbers = if out.wants_regions() { self.entities.numbers(self.row, most)? } else { Vec::new() };
+        let mut numbers = numbers.into_iter();
         match self.encoding {
             Encoding::Text => {
                 let mut words = Words::new(span.start, &window);
                 while words.more() {
                     out.at = words.spot();
+                    self.enter(numbers.next(), out)?;
                     for id in &mut ids {
                         *id = self.node(words.integer("the number of an element's node")?);
                     }
@@ -108,6 +118,7 @@ impl ElementLayout for Elements {
                 let width = 4 * self.kind.nodes;
                 for (k, row) in window.chunks_exact(width).enumerate() {
                     out.at = Spot::Binary(span.start + (k * width) as u64);
+                    self.enter(numbers.next(), out)?;
                     for (id, raw) in ids.iter_mut().zip(row.as_chunks::<4>().0) {
                         let number = i32::from_le_bytes(*raw);
                         *id = self.node(u64::try_from(number).map_err(|_| {
@@ -124,6 +135,13 @@ impl ElementLayout for Elements {
 }
 
 impl Elements {
+    /// The element that follows lies in the entity of that number, if it has one.
+    #[inline]
+    fn enter(&self, entity: Option<i64>, out: &mut ElementSink<'_>) -> Result<()> {
+        let Some(number) = entity else { return Ok(()) };
+        out.region(number.cast_unsigned(), || self.entities.name(number))
+    }
+
     /// A node's number in the whole file; none where the mesh cannot have such a node.
     #[inline]
     fn node(&self, number: u64) -> u64 {

@@ -1,6 +1,7 @@
 //! COMSOL Multiphysics' native text (`.mphtxt`) and binary (`.mphbin`) files: a list of objects, of which those of the
 //! class `Mesh` are read, in the versions 1, 2, 4 and 8 of the class, and selections are passed over.
 
+mod entities;
 mod layouts;
 mod object;
 mod reader;
@@ -38,6 +39,10 @@ impl Format for Comsol {
 
     fn detect(&self, head: &[u8]) -> bool {
         is_binary(head) || is_text(head)
+    }
+
+    fn regions(&self) -> Option<&'static str> {
+        Some("domains, boundaries, edges and points of the geometry")
     }
 
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {

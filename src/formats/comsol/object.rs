@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::entities::Entities;
 use super::layouts::{Elements, NUMBERS, Points};
 use super::reader::{Number, Reader};
 use super::types;
@@ -97,7 +98,7 @@ fn mesh(reader: &mut Reader<'_>, found: &mut Found, out: &mut dyn Outline) -> Re
         out.nodes(Piece { layout: Arc::new(layout), span })
     })?;
     for _ in 0..reader.count("the number of element types")? {
-        elements(reader, version, this, found, out)?;
+        elements(reader, version, (this, dimension), found, out)?;
     }
     Ok(())
 }
@@ -106,7 +107,7 @@ fn mesh(reader: &mut Reader<'_>, found: &mut Found, out: &mut dyn Outline) -> Re
 fn elements(
     reader: &mut Reader<'_>,
     version: i64,
-    mesh: u64,
+    (mesh, space): (u64, usize),
     found: &mut Found,
     out: &mut dyn Outline,
 ) -> Result<()> {
@@ -124,15 +125,17 @@ fn elements(
     }
     let count = reader.count("the number of elements")?;
     let what = format!("elements of the type {name}");
+    let mut of_elements = None;
     match known {
         Some(kind) => {
             let (source, encoding) = (Arc::clone(&reader.input.source), reader.encoding());
+            let entities = Arc::new(Entities::of(&source, encoding, types::dimension(kind), space));
+            of_elements = Some(Arc::clone(&entities));
             reader.rows((count, nodes), Number::Integer, &what, |span, row| {
-                let (source, kind, first) = (Arc::clone(&source), Arc::clone(kind), found.elements + row);
-                out.elements(Piece {
-                    layout: Arc::new(Elements { source, encoding, kind, mesh, first }),
-                    span,
-                })
+                let (source, kind, entities) = (Arc::clone(&source), Arc::clone(kind), Arc::clone(&entities));
+                let first = found.elements + row;
+                let layout = Arc::new(Elements { source, encoding, kind, mesh, first, row, entities });
+                out.elements(Piece { layout, span })
             })?;
         }
         None => {
@@ -147,7 +150,14 @@ fn elements(
         reader.skip((rows, values), Number::Real, "parameters")?;
     }
     let entities = reader.count("the number of geometric entity indices")?;
-    reader.skip((entities, 1), Number::Integer, "geometric entity indices")?;
+    let mut pieces = Vec::new();
+    reader.rows((entities, 1), Number::Integer, "geometric entity indices", |span, row| {
+        pieces.push((row, span));
+        Ok(())
+    })?;
+    if let Some(known) = of_elements.filter(|_| entities == count) {
+        known.pieces.set(pieces).expect("a list is read once");
+    }
     if version < 4 {
         let pairs = reader.count("the number of up/down pairs")?;
         reader.skip((pairs, 2), Number::Integer, "up/down pairs")?;

@@ -36,6 +36,14 @@ pub(super) fn by_name(name: &str) -> Option<&'static Arc<ElementType>> {
     TYPES.iter().find(|kind| kind.name == name)
 }
 
+/// Number of dimensions of an element.
+pub(super) fn dimension(kind: &ElementType) -> usize {
+    match &kind.class {
+        Class::Measured { shape, .. } => shape.dimension(),
+        Class::Counted(what) => usize::from(what == "line"),
+    }
+}
+
 /// A type that is not known: counted under its own name.
 pub(super) fn unknown(name: String, nodes: usize) -> ElementType {
     let name: Cow<'static, str> = name.into();

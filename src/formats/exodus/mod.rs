@@ -12,6 +12,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::formats::array::elements::{Elements, Labels, NodeRange, UsedNodes};
 use crate::formats::array::nodes::Coordinates;
+use crate::formats::array::regions::InRegions;
 use crate::formats::array::table::Table;
 use crate::formats::array::{Array, Stored, Stores, Unpacked};
 use crate::formats::netcdf::{self, Variable, Variables};
@@ -21,6 +22,8 @@ use crate::mesh::ElementType;
 
 /// Most nodes of one element.
 const MOST_NODES: u64 = 4096;
+/// Most blocks whose numbers are looked at.
+const MOST_BLOCKS: u64 = 1 << 20;
 
 /// The format's row in the table of formats.
 pub(super) struct Exodus;
@@ -56,6 +59,10 @@ impl Format for Exodus {
         self.detect(head) || netcdf::detect(head) && netcdf::open(input, has_mesh).unwrap_or(false)
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("element blocks")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         netcdf::open(input, |file| outline(input, file, out))
     }
@@ -68,14 +75,20 @@ struct Block {
     /// Where the numbers of its nodes stand, unless it lists faces.
     nodes: Option<Stored>,
     name: String,
+    /// What the user calls it.
+    region: String,
 }
 
 fn outline(input: &Input, file: &dyn Variables, out: &mut dyn Outline) -> Result<()> {
     let mut unpacked = Unpacked::new(input);
     let coordinates = coordinates(input, file, &mut unpacked)?;
     let mut blocks = Vec::new();
-    for variable in block_variables(file) {
-        blocks.extend(block(input, file, variable, coordinates.len(), &mut unpacked)?);
+    let names = block_names(file)?;
+    for (number, variable) in block_variables(file) {
+        let found = block(input, file, variable, coordinates.len(), &mut unpacked)?;
+        let place = usize::try_from(number.wrapping_sub(1)).unwrap_or(usize::MAX);
+        let region = names.get(place).cloned().unwrap_or_else(|| number.to_string());
+        blocks.extend(found.map(|block| Block { region, ..block }));
     }
     let mut faces = Vec::new();
     if blocks.iter().any(|block| block.nodes.is_none()) {
@@ -107,7 +120,7 @@ fn hand_out(
     out: &mut dyn Outline,
 ) -> Result<()> {
     let mut first = 0;
-    for Block { kind, count, nodes, name } in blocks {
+    for Block { kind, count, nodes, name, region } in blocks {
         match nodes {
             Some(nodes) if nodes.count == count.saturating_mul(kind.nodes as u64) => {
                 let labels = match labels {
@@ -116,7 +129,8 @@ fn hand_out(
                 };
                 let nodes = Table::Rows(stores.array(nodes, &name)?, kind.nodes);
                 let (file, range) = (Arc::clone(&stores.file), NodeRange::default());
-                Elements { file, kind, nodes, labels, range }.outline(out)?;
+                let regions = InRegions::named(region);
+                Elements { file, kind, nodes, labels, range, regions }.outline(out)?;
             }
             Some(nodes) => {
                 out.count(&kind, count)?;
@@ -161,8 +175,34 @@ fn coordinates(input: &Input, file: &dyn Variables, unpacked: &mut Unpacked<'_>)
     Ok(found)
 }
 
-/// The variables that list the blocks' elements, in the order of the blocks' numbers.
-fn block_variables(file: &dyn Variables) -> Vec<&Variable> {
+/// What the user calls each block: its name, or the number that he gave it.
+fn block_names(file: &dyn Variables) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    if let Some(variable) = file.find("eb_names")
+        && let [_, width] = variable.shape[..]
+        && width > 0
+        && let Some(letters) = file.letters(variable)?
+    {
+        let name = |raw: &[u8]| {
+            let end = memchr::memchr(0, raw).unwrap_or(raw.len());
+            String::from_utf8_lossy(&raw[..end]).trim().to_owned()
+        };
+        names = letters.chunks(usize::try_from(width).unwrap_or(usize::MAX)).map(name).collect();
+    }
+    if let Some(variable) = file.find("eb_prop1") {
+        for (k, id) in file.integers(variable, MOST_BLOCKS)?.into_iter().enumerate() {
+            match names.get_mut(k) {
+                Some(name) if name.is_empty() => *name = id.to_string(),
+                Some(_) => {}
+                None => names.push(id.to_string()),
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// The variables that list the blocks' elements, and the blocks' places among all, from 1, in their order.
+fn block_variables(file: &dyn Variables) -> Vec<(u64, &Variable)> {
     let number = |name: &str| {
         let digits = name.strip_prefix("connect").or_else(|| name.strip_prefix("facconn"))?;
         digits.parse::<u64>().ok()
@@ -170,7 +210,7 @@ fn block_variables(file: &dyn Variables) -> Vec<&Variable> {
     let mut blocks: Vec<_> =
         file.variables().iter().filter_map(|variable| Some((number(&variable.name)?, variable))).collect();
     blocks.sort_by_key(|block| block.0);
-    blocks.into_iter().map(|block| block.1).collect()
+    blocks
 }
 
 fn block(
@@ -203,7 +243,7 @@ fn block(
         _ => return Err(wrong_shape(input, connect, &format!("elements x at most {MOST_NODES} nodes"))),
     };
     let nodes = if name.starts_with("facconn") { None } else { Some(file.store(connect, unpacked)?) };
-    Ok(Some(Block { kind, count, nodes, name }))
+    Ok(Some(Block { kind, count, nodes, name, region: String::new() }))
 }
 
 fn wrong_shape(input: &Input, variable: &Variable, expected: &str) -> Error {

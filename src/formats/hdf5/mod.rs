@@ -272,6 +272,14 @@ impl Dataset<'_> {
         found.read_as_f64().ok().map(|value| value as i64)
     }
 
+    /// Its bytes, where there are at most `most` of them: names, one after another, each of equal length.
+    pub fn letters(&self, most: usize) -> Result<Option<Vec<u8>>> {
+        if self.inner.raw_byte_len().is_ok_and(|bytes| bytes <= most) {
+            return self.inner.read_raw_bytes().map(Some).map_err(|error| self.wrong(error));
+        }
+        Ok(None)
+    }
+
     /// Whether it is of numbers.
     pub fn is_of_numbers(&self) -> bool {
         number(self.inner.dtype()).is_some()

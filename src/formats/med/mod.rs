@@ -5,15 +5,18 @@
 //! MED lists the nodes of solids the other way round than most formats do, and not all writers follow: corners are kept
 //! as they stand.
 
+mod families;
 #[cfg(test)]
 mod tests;
 mod types;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::array::elements::{Elements, Labels, NodeRange, UsedNodes};
 use crate::formats::array::nodes::Coordinates;
+use crate::formats::array::regions::{InRegions, Keys};
 use crate::formats::array::table::Table;
 use crate::formats::array::{Stored, Stores, Unpacked};
 use crate::formats::hdf5::{self, Dataset, Group, Hdf5};
@@ -56,6 +59,10 @@ impl Format for Med {
         self.detect(head) || hdf5::detect(head) && Hdf5::open(input).and_then(has_meshes).unwrap_or(false)
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("groups, or families without groups")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let file = Hdf5::open(input)?;
         let root = file.root()?;
@@ -65,8 +72,11 @@ impl Format for Med {
         };
         let mut unpacked = Unpacked::new(input);
         let groups = all.groups()?;
-        let meshes = groups.iter().map(|mesh| Mesh::find(input, mesh, &mut unpacked));
-        let meshes = meshes.collect::<Result<Vec<_>>>()?;
+        let mut meshes = Vec::new();
+        for mesh in &groups {
+            let families = Arc::new(families::names(&root, mesh.name())?);
+            meshes.push(Mesh { families, ..Mesh::find(input, mesh, &mut unpacked)? });
+        }
         if meshes.is_empty() {
             return Err(all.malformed("a mesh", "none"));
         }
@@ -99,6 +109,8 @@ struct Mesh {
     axes: usize,
     coordinates: Stored,
     blocks: Vec<Block>,
+    /// What the user calls the families of elements.
+    families: Arc<HashMap<u64, String>>,
 }
 
 /// Elements of one type.
@@ -107,6 +119,7 @@ struct Block {
     count: u64,
     nodes: Stored,
     labels: Option<Stored>,
+    families: Option<Stored>,
 }
 
 impl Mesh {
@@ -131,7 +144,8 @@ impl Mesh {
         for group in step.group("MAI")?.map_or(Ok(Vec::new()), |group| group.groups())? {
             blocks.extend(Block::find(input, &group, unpacked)?);
         }
-        Ok(Self { nodes: count, axes, coordinates: coordinates.store(input, unpacked)?, blocks })
+        let coordinates = coordinates.store(input, unpacked)?;
+        Ok(Self { nodes: count, axes, coordinates, blocks, families: Arc::default() })
     }
 
     fn element_count(&self) -> u64 {
@@ -152,7 +166,7 @@ impl Mesh {
         let within = several.then_some((1, self.nodes));
         let range = NodeRange { offset: first_node - 1, within };
         let mut first = first_element;
-        for Block { kind, count, nodes, labels } in self.blocks {
+        for Block { kind, count, nodes, labels, families } in self.blocks {
             let (nodes, file) = (stores.array(nodes, "NOD")?, Arc::clone(&file));
             if kind.nodes == 0 {
                 out.count(&kind, count)?;
@@ -163,7 +177,14 @@ impl Mesh {
                     None => Labels::From(first),
                 };
                 let nodes = Table::striped(&nodes, kind.nodes);
-                Elements { file, kind, nodes, labels, range }.outline(out)?;
+                let regions = match families {
+                    None => InRegions::Unknown,
+                    Some(stored) => {
+                        let (keys, names) = (stores.array(stored, "FAM")?, Arc::clone(&self.families));
+                        InRegions::Keyed(Keys { keys, names })
+                    }
+                };
+                Elements { file, kind, nodes, labels, range, regions }.outline(out)?;
             }
             first += count;
         }
@@ -222,7 +243,12 @@ impl Block {
             Some(labels) if labels.len() == count => Some(labels.store(input, unpacked)?),
             _ => None,
         };
-        Ok(Some(Self { kind: Arc::clone(kind), count, nodes: nodes.store(input, unpacked)?, labels }))
+        let families = match group.dataset("FAM")? {
+            Some(families) if families.len() == count => Some(families.store(input, unpacked)?),
+            _ => None,
+        };
+        let (kind, nodes) = (Arc::clone(kind), nodes.store(input, unpacked)?);
+        Ok(Some(Self { kind, count, nodes, labels, families }))
     }
 
     /// Polygons and polyhedra, whose lists have any length, and types that are not known.
@@ -245,6 +271,7 @@ impl Block {
             None => shape(nodes)?.0,
         };
         let kind = Arc::new(types::of_lists(group.name()));
-        Ok(Some(Self { kind, count, nodes: nodes.store(input, unpacked)?, labels: None }))
+        let nodes = nodes.store(input, unpacked)?;
+        Ok(Some(Self { kind, count, nodes, labels: None, families: None }))
     }
 }

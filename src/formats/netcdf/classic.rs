@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::{Variable, Variables};
+use super::{MOST_LETTERS, Variable, Variables};
 use crate::error::{Error, Result};
 use crate::formats::array::{Number, Origin, Stored, Unpacked, check_fits};
 use crate::formats::binary::Endian::Big;
@@ -99,6 +99,24 @@ impl Variables for Classic<'_> {
     fn text(&self, variable: &Variable, attribute: &str) -> Result<Option<String>> {
         let texts = self.stored.get(&variable.name).map_or(&[][..], |entry| &entry.texts);
         Ok(texts.iter().find(|text| text.0 == attribute).map(|text| text.1.clone()))
+    }
+
+    fn letters(&self, variable: &Variable) -> Result<Option<Vec<u8>>> {
+        let entry =
+            self.stored.get(&variable.name).filter(|entry| entry.number.is_none() && !entry.is_record);
+        let fits = entry.filter(|entry| entry.bytes <= MOST_LETTERS as u64);
+        Ok(fits.map(|entry| self.source.peek(entry.begin..entry.begin.saturating_add(entry.bytes)).to_vec()))
+    }
+
+    fn integers(&self, variable: &Variable, most: u64) -> Result<Vec<i64>> {
+        let mut values = Vec::new();
+        let entry = self.stored.get(&variable.name).filter(|entry| !entry.is_record);
+        if let Some((entry, number)) = entry.and_then(|entry| Some((entry, entry.number?)))
+            && variable.len() <= most
+        {
+            number.integers(Big, self.source.peek(entry.begin..entry.begin + entry.bytes), &mut values);
+        }
+        Ok(values.into_iter().map(u64::cast_signed).collect())
     }
 
     fn store(&self, variable: &Variable, _: &mut Unpacked<'_>) -> Result<Stored> {

@@ -1,6 +1,6 @@
 //! NetCDF-4: variables as datasets of an HDF5 file's root.
 
-use super::{Variable, Variables};
+use super::{MOST_LETTERS, Variable, Variables};
 use crate::error::{Error, Result};
 use crate::formats::array::{Stored, Unpacked};
 use crate::formats::hdf5::{Dataset, Hdf5};
@@ -42,6 +42,15 @@ impl Variables for NetCdf4<'_> {
 
     fn text(&self, variable: &Variable, attribute: &str) -> Result<Option<String>> {
         Ok(self.dataset(variable)?.text(attribute))
+    }
+
+    fn letters(&self, variable: &Variable) -> Result<Option<Vec<u8>>> {
+        self.dataset(variable)?.letters(MOST_LETTERS)
+    }
+
+    fn integers(&self, variable: &Variable, most: u64) -> Result<Vec<i64>> {
+        let dataset = self.dataset(variable)?;
+        if dataset.is_of_numbers() && dataset.len() <= most { dataset.integers(most) } else { Ok(Vec::new()) }
     }
 
     fn store(&self, variable: &Variable, unpacked: &mut Unpacked<'_>) -> Result<Stored> {

@@ -50,14 +50,22 @@ impl Variable {
     }
 }
 
+/// Most letters of a variable of names.
+const MOST_LETTERS: usize = 4 << 20;
+
 /// A container of variables.
 pub trait Variables {
     /// The variables, in the file's order.
     fn variables(&self) -> &[Variable];
     /// The text of an attribute of a variable, without blanks and zeros round it.
     fn text(&self, variable: &Variable, attribute: &str) -> Result<Option<String>>;
+    /// The letters of a variable of text, all entries one after another; nothing where they are more than a few names.
+    fn letters(&self, variable: &Variable) -> Result<Option<Vec<u8>>>;
     /// Finds the numbers of a variable, or unpacks them.
     fn store(&self, variable: &Variable, unpacked: &mut Unpacked<'_>) -> Result<Stored>;
+
+    /// The whole numbers of a variable; none where they are more than `most`, or no numbers.
+    fn integers(&self, variable: &Variable, most: u64) -> Result<Vec<i64>>;
 
     /// The variable called `name`.
     fn find(&self, name: &str) -> Option<&Variable> {

@@ -30,6 +30,8 @@ pub(super) struct ElementLines {
     /// Number of the first element.
     pub(super) first: u64,
     pub(super) zone: Zone,
+    /// The marker that the elements are of.
+    pub(super) marker: Option<Arc<str>>,
 }
 
 impl ElementLayout for ElementLines {
@@ -38,6 +40,9 @@ impl ElementLayout for ElementLines {
     }
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
+        if let Some(marker) = &self.marker {
+            out.region(0, || marker.to_string())?;
+        }
         let window = self.source.window(span.clone());
         let mut label = self.first;
         let mut row = [0; LONGEST];

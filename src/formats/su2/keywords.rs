@@ -65,8 +65,10 @@ struct Found {
     has_elements: bool,
     markers_said: Option<u64>,
     markers: u64,
-    /// Pieces of element rows, with the number of the first: the zone's points may come later.
-    elements: Vec<(u64, Range<u64>)>,
+    /// The last marker's name.
+    tag: Option<Arc<str>>,
+    /// Pieces of element rows, with the number of the first and the marker: the zone's points may come later.
+    elements: Vec<(u64, Range<u64>, Option<Arc<str>>)>,
 }
 
 struct Reader<'i> {
@@ -115,17 +117,21 @@ impl Reader<'_> {
             (b"NPOIN", Some(count)) => self.points(count, out),
             (b"NELEM", Some(count)) => {
                 self.zone.has_elements = true;
-                self.elements(count, "rows of NELEM")
+                self.elements(count, "rows of NELEM", None)
             }
             (b"NMARK", said) => {
                 self.zone.markers_said = said;
                 Ok(())
             }
-            (b"MARKER_TAG", _) => Ok(()),
+            (b"MARKER_TAG", _) => {
+                self.zone.tag = Some(String::from_utf8_lossy(value).into());
+                Ok(())
+            }
             (b"MARKER_ELEMS", Some(count)) => {
                 self.zone.markers += 1;
                 self.pass_send_to()?;
-                self.elements(count, "rows of MARKER_ELEMS")
+                let tag = self.zone.tag.clone();
+                self.elements(count, "rows of MARKER_ELEMS", tag)
             }
             _ => {
                 self.free = true;
@@ -149,10 +155,10 @@ impl Reader<'_> {
         pass_node_lines(&mut self.lines, self.source, COMMENT, rows, first, out)
     }
 
-    fn elements(&mut self, count: u64, what: &str) -> Result<()> {
+    fn elements(&mut self, count: u64, what: &str, marker: Option<Arc<str>>) -> Result<()> {
         let (label, pieces) = (self.label, &mut self.zone.elements);
         pass_lines(&mut self.lines, self.source, COMMENT, (count, what), |first, span| {
-            pieces.push((label + first, span));
+            pieces.push((label + first, span, marker.clone()));
             Ok(())
         })?;
         self.label += count;
@@ -183,8 +189,9 @@ impl Reader<'_> {
         }
         let several = self.zones > 0 || self.zones_said.is_some_and(|zones| zones > 1);
         let numbers = Zone { first: self.points, points: several.then_some(points) };
-        for (first, span) in zone.elements {
-            let layout = Arc::new(ElementLines { source: Arc::clone(self.source), first, zone: numbers });
+        for (first, span, marker) in zone.elements {
+            let source = Arc::clone(self.source);
+            let layout = Arc::new(ElementLines { source, first, zone: numbers, marker });
             out.elements(Piece { layout, span })?;
         }
         self.points += points;

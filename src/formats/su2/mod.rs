@@ -43,6 +43,10 @@ impl Format for Su2 {
         &[Shape::Wedge]
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("markers")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         keywords::outline(input, out)
     }

@@ -23,14 +23,13 @@ pub fn unpack(
     let number = role.unpacked(declared);
     let (from, at) = (range.start, out.len());
     let most = count.unwrap_or(u64::MAX);
+    let what = if role == Role::Mark { "a number" } else { "a coordinate" };
     let end = match number {
-        Number::F32 => run(input, range, most, "a coordinate", out, |token| {
+        Number::F32 => run(input, range, most, what, out, |token| {
             let value = fast_float2::parse::<f32, _>(token).ok();
             value.or_else(|| text::real(token).map(|v| v as f32)).map(f32::to_le_bytes)
         }),
-        Number::F64 => {
-            run(input, range, most, "a coordinate", out, |token| text::real(token).map(f64::to_le_bytes))
-        }
+        Number::F64 => run(input, range, most, what, out, |token| text::real(token).map(f64::to_le_bytes)),
         Number::U8 => run(input, range, most, "a cell type (0 to 255)", out, |token| {
             text::integer(token).and_then(|v| u8::try_from(v).ok()).map(u8::to_le_bytes)
         }),

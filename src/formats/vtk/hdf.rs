@@ -10,7 +10,10 @@ use crate::formats::{Format, HEAD_BYTES, Outline};
 use crate::input::Input;
 use crate::mesh::Shape;
 
-use super::layout::{Cells, Lists, Points, Types};
+use super::layout::Cells;
+use super::lists::{Lists, Types};
+use super::points::Points;
+use crate::formats::array::regions::InRegions;
 
 /// The group of all data.
 const ROOT: &str = "VTKHDF";
@@ -279,7 +282,20 @@ impl OpenCells {
         first.cell += count;
         let lists = Lists::Ends(offsets.without_first());
         let (file, points) = (stores.file.clone(), first.several.then_some(points));
-        Cells { file, connectivity, lists, types, count, first_cell, first_point, points }.outline(out)
+        let (regions, ghosts) = (InRegions::Unknown, None);
+        let cells = Cells {
+            file,
+            connectivity,
+            lists,
+            types,
+            count,
+            first_cell,
+            first_point,
+            points,
+            regions,
+            ghosts,
+        };
+        cells.outline(out)
     }
 }
 

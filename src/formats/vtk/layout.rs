@@ -1,53 +1,21 @@
-//! How points and cells are decoded, wherever their arrays came from.
+//! How cells are decoded, wherever their arrays came from.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
+use crate::formats::array::regions::InRegions;
 use crate::formats::array::{Array, Reader};
 use crate::formats::binary::cut_records;
-use crate::formats::{BLOCK, ElementLayout, ElementSink, NodeBatch, NodeLayout, Outline, PIECE_BYTES, Piece};
+use crate::formats::{BLOCK, ElementLayout, ElementSink, Outline, Piece};
 use crate::input::{Source, Spot};
 use crate::mesh::{Class, ElementType};
 
 use super::cells;
+use super::lists::{Lists, Types, list_end};
 
 /// Most cells that are looked at in one go.
 const STEP: u64 = 4096;
-
-/// Points: x, y, z of each.
-#[derive(Debug)]
-pub struct Points {
-    /// The mesh file, for errors.
-    pub file: Arc<Source>,
-    /// Three numbers a point.
-    pub coordinates: Array,
-}
-
-impl Points {
-    /// Hands out the points, cut into pieces.
-    pub fn outline(self, out: &mut dyn Outline) -> Result<()> {
-        let (count, width) = (self.coordinates.len() / 3, self.coordinates.width());
-        let layout: Arc<dyn NodeLayout> = Arc::new(self);
-        cut_records(count, 3 * width, |span| out.nodes(Piece { layout: Arc::clone(&layout), span }))
-    }
-}
-
-impl NodeLayout for Points {
-    fn source(&self) -> &Source {
-        &self.file
-    }
-
-    fn decode(&self, span: Range<u64>, out: &mut NodeBatch) -> Result<()> {
-        let mut values = Vec::new();
-        self.coordinates.reals(3 * span.start..3 * span.end, &mut values);
-        for (point, xyz) in span.zip(values.as_chunks::<3>().0) {
-            out.at = self.coordinates.spot(3 * point);
-            out.push_next(*xyz)?;
-        }
-        Ok(())
-    }
-}
 
 /// Cells of one piece of a grid.
 #[derive(Debug)]
@@ -68,63 +36,10 @@ pub struct Cells {
     pub first_point: u64,
     /// Number of points of this piece, where the file has several: numbers beyond would be another piece's points.
     pub points: Option<u64>,
-}
-
-/// How the cells' lists of points are told apart.
-#[derive(Debug)]
-pub enum Lists {
-    /// By the end of each list; the first list starts at 0.
-    Ends(Array),
-    /// By a count before each list. Known are the places of some lists: number of the cell, and where its count stands.
-    Counted(Vec<(u64, u64)>),
-}
-
-/// Types of cells.
-#[derive(Debug)]
-pub enum Types {
-    /// One code a cell.
-    Each(Array),
-    /// One code for all.
-    All(u64),
-}
-
-/// Walks through lists with a count before each: gives the places where a piece shall start.
-pub fn walk_counted(file: &Source, lists: &Array, cells: u64) -> Result<Vec<(u64, u64)>> {
-    let mut reader = Reader::new(lists);
-    let (mut at, mut starts) = (0, Vec::new());
-    let step = PIECE_BYTES / lists.width();
-    for cell in 0..cells {
-        if starts.last().is_none_or(|(_, start)| at - start >= step) {
-            starts.push((cell, at));
-        }
-        if at >= lists.len() {
-            let error =
-                Error::malformed(format!("the list of cell {cell} of {cells}"), "the end of the lists");
-            return Err(file.place(error, lists.spot(at)));
-        }
-        let nodes = reader.get(at..at + 1, lists.len())[0];
-        at = list_end(at + 1, nodes, lists.len(), cell).map_err(|e| file.place(e, lists.spot(at)))?;
-    }
-    if at != lists.len() {
-        let error = Error::malformed(
-            format!("{} numbers in the lists of {cells} cells", lists.len()),
-            format!("{at}"),
-        );
-        return Err(file.place(error, lists.spot(at)));
-    }
-    Ok(starts)
-}
-
-/// The end of a list of `nodes` points that starts at `start`.
-#[inline]
-fn list_end(start: u64, nodes: u64, len: u64, cell: u64) -> Result<u64> {
-    match start.checked_add(nodes) {
-        Some(end) if end <= len => Ok(end),
-        _ => Err(Error::malformed(
-            format!("at most {} points for cell {cell}", len.saturating_sub(start)),
-            format!("{}", nodes.cast_signed()),
-        )),
-    }
+    /// Which regions the cells are in.
+    pub regions: InRegions,
+    /// Marks of each cell, and those that say that it is left out: another piece has it, or the file hides it.
+    pub ghosts: Option<(Array, u64)>,
 }
 
 impl Cells {
@@ -197,7 +112,8 @@ impl ElementLayout for Cells {
     }
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
-        let (mut ends, mut codes) = (Vec::new(), Vec::new());
+        let (mut ends, mut codes, mut marks) = (Vec::new(), Vec::new(), Vec::new());
+        let hidden = self.ghosts.as_ref().map_or(0, |ghosts| ghosts.1);
         let mut connectivity = Reader::new(&self.connectivity);
         let len = self.connectivity.len();
         let mut kind = LastKind::default();
@@ -209,6 +125,11 @@ impl ElementLayout for Cells {
                 Types::Each(types) => types.integers(step.clone(), &mut codes),
                 Types::All(code) => codes.resize((step.end - step.start) as usize, *code),
             }
+            let regions = self.regions.begin(step.clone(), out)?;
+            if let Some((array, _)) = &self.ghosts {
+                array.integers(step.clone(), &mut marks);
+            }
+            let are_alike = regions.is_empty() && marks.is_empty();
             let ahead = match &self.lists {
                 Lists::Ends(array) => {
                     array.integers(step.clone(), &mut ends);
@@ -218,7 +139,8 @@ impl ElementLayout for Cells {
             };
             let mut cells = step.clone().enumerate();
             while let Some((k, cell)) = cells.next() {
-                if k.is_multiple_of(BLOCK)
+                if are_alike
+                    && k.is_multiple_of(BLOCK)
                     && let Lists::Ends(_) = &self.lists
                     && let Some(end) =
                         self.block(at, &ends[k..], &codes[k..], cell, ahead, &mut connectivity, out)?
@@ -238,6 +160,13 @@ impl ElementLayout for Cells {
                 };
                 let kind = kind.find(codes[k], list.end - list.start, label)?;
                 at = list.end;
+                if marks.get(k).is_some_and(|mark| mark & hidden != 0) {
+                    out.ghost();
+                    continue;
+                }
+                if let Some(region) = regions.get(k) {
+                    self.regions.enter(*region, out)?;
+                }
                 self.cell(label, kind, list, ahead, &mut connectivity, out)?;
             }
             from = step.end;

@@ -1,6 +1,6 @@
-//! The VTK family: legacy files ([`Legacy`], `.vtk`) and XML unstructured grids ([`Vtu`], `.vtu`).
+//! The VTK family: legacy files ([`Legacy`], `.vtk`) and XML files ([`Vtu`], `.vtu` and others).
 //!
-//! Both hold the same four arrays: points, connectivity, offsets and cell types. Arrays that stand in the file as plain
+//! Both hold the same four arrays: points, connectivity, offsets and cell types; or a structured grid ([`grid`]). Arrays that stand in the file as plain
 //! binary numbers are read where they stand; text, base64 and compressed arrays are unpacked to scratch first. From
 //! there on one [`layout`] serves both.
 //!
@@ -12,14 +12,18 @@
 
 pub(super) mod ascii;
 mod cells;
+mod grid;
 #[cfg(feature = "hdf5")]
 mod hdf;
 mod layout;
 mod legacy;
+mod lists;
+mod marks;
 pub(super) mod markup;
 mod payload;
+mod points;
 pub(super) mod role;
-mod vtu;
+mod xml;
 
 #[cfg(test)]
 mod tests;
@@ -27,4 +31,4 @@ mod tests;
 #[cfg(feature = "hdf5")]
 pub use hdf::VtkHdf;
 pub use legacy::Legacy;
-pub use vtu::Vtu;
+pub use xml::Vtu;

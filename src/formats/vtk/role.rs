@@ -13,6 +13,8 @@ pub enum Role {
     Offset,
     /// Types of the cells.
     Code,
+    /// Marks of the cells: what region each is in, whether it is left out.
+    Mark,
 }
 
 impl Role {
@@ -23,19 +25,20 @@ impl Role {
             Role::Point => "connectivity",
             Role::Offset => "offsets",
             Role::Code => "types",
+            Role::Mark => "cell data",
         }
     }
 
     /// Whether an array of such numbers can serve.
     pub fn allows(self, number: Number) -> bool {
-        self == Role::Coordinate || !matches!(number, Number::F32 | Number::F64)
+        matches!(self, Role::Coordinate | Role::Mark) || !matches!(number, Number::F32 | Number::F64)
     }
 
     /// How text is unpacked. More points than an unsigned number of 32 bits can count are not read in any way.
     pub fn unpacked(self, declared: Number) -> Number {
         match self {
             Role::Coordinate if declared == Number::F32 => Number::F32,
-            Role::Coordinate => Number::F64,
+            Role::Coordinate | Role::Mark => Number::F64,
             Role::Point => Number::U32,
             Role::Offset => Number::U64,
             Role::Code => Number::U8,

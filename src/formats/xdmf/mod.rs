@@ -17,6 +17,7 @@ use crate::formats::array::Stores;
 use crate::formats::array::coded::{Coded, Heads};
 use crate::formats::array::elements::{Elements, Labels, NodeRange};
 use crate::formats::array::nodes::Coordinates;
+use crate::formats::array::regions::InRegions;
 use crate::formats::array::table::Table;
 use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
@@ -147,7 +148,8 @@ impl Ready {
         let file = Arc::clone(array.source());
         let count = match self.cells {
             Cells::Mixed(count) => {
-                Coded::outline(&file, array, Heads::Codes(types::head), count, first.element, range, out)?;
+                let (stream, elements) = ((array, Heads::Codes(types::head)), (first.element, count));
+                Coded::outline(&file, stream, elements, range, InRegions::Unknown, out)?;
                 count
             }
             Cells::Uniform(kind) => {
@@ -157,7 +159,8 @@ impl Ready {
                 }
                 let (count, labels) = (array.len() / width, Labels::From(first.element));
                 let nodes = Table::Rows(array, kind.nodes);
-                Elements { file, kind, nodes, labels, range }.outline(out)?;
+                let regions = InRegions::Unknown;
+                Elements { file, kind, nodes, labels, range, regions }.outline(out)?;
                 count
             }
         };

@@ -226,7 +226,7 @@ fn details(meshes: &[Summary]) -> Vec<Details> {
 }
 
 /// The checks by what they count.
-fn checks(checks: &Checks) -> [(&'static str, u64); 8] {
+fn checks(checks: &Checks) -> [(&'static str, u64); 9] {
     [
         ("missing nodes", checks.missing_nodes),
         ("repeated nodes", checks.repeated_nodes),
@@ -236,6 +236,7 @@ fn checks(checks: &Checks) -> [(&'static str, u64); 8] {
         ("reversed", checks.reversed),
         ("concave faces", checks.concave_faces),
         ("crossed faces", checks.crossed_faces),
+        ("ghosts left out", checks.ghost_elements),
     ]
 }
 

@@ -3,6 +3,7 @@
 mod corpus;
 mod faults;
 mod made;
+mod parameters;
 mod quirks;
 
 use std::path::Path;

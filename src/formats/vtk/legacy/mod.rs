@@ -1,20 +1,27 @@
 //! Legacy VTK files: `# vtk DataFile Version`, text or big-endian binary, versions 1 to 5.
 //!
-//! Unstructured grids are read whole; of polygonal data the polygons. Up to version 4.2 a cell's list of points starts
+//! Unstructured, structured, rectilinear and uniform grids and polygonal data are read. Up to version 4.2 a cell's list of points starts
 //! with their number; from 5.0 on there are `OFFSETS` and `CONNECTIVITY`. Other sections are
 //! gone over.
 
 mod attributes;
 mod reader;
+mod structured;
+
+use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::formats::{Format, Outline};
 use crate::input::{Input, Spot};
 use crate::mesh::Shape;
 
-use super::layout::{Cells, Lists, Points, Types, walk_counted};
+use super::layout::Cells;
+use super::lists::{Lists, Types, walk_counted};
+use super::points::Points;
 use super::role::Role;
+use crate::formats::array::regions::{InRegions, Keys};
 use crate::formats::array::{Array, Number, Stored, Stores};
+use attributes::Data;
 use reader::Reader;
 
 /// Legacy VTK.
@@ -29,7 +36,7 @@ impl Format for Legacy {
     }
 
     fn title(&self) -> &'static str {
-        "VTK legacy, versions 1.0 to 5.1, ASCII and binary: unstructured grids and polygonal data"
+        "VTK legacy, versions 1.0 to 5.1, ASCII and binary: unstructured, polygonal, structured, rectilinear and uniform data"
     }
 
     fn extensions(&self) -> &'static [&'static str] {
@@ -48,11 +55,15 @@ impl Format for Legacy {
         head.get(..MAGIC.len()).is_some_and(|start| start.eq_ignore_ascii_case(MAGIC))
     }
 
+    fn regions(&self) -> Option<&'static str> {
+        Some("cell data of a material, region, block or part")
+    }
+
     fn outline(&self, input: &Input, out: &mut dyn Outline) -> Result<()> {
         let mut reader = Reader::open(input)?;
         let grid = reader.grid()?;
         let stores = reader.unpacked.finish()?;
-        grid.outline(&stores, out)
+        grid.outline(input, &stores, out)
     }
 }
 
@@ -62,6 +73,9 @@ struct Grid {
     points: Option<Stored>,
     cells: Vec<Section>,
     types: Option<Stored>,
+    /// What follows from the dimensions, of other than unstructured grids and polygonal data.
+    block: Option<structured::Block>,
+    data: Data,
 }
 
 /// A section of cells.
@@ -81,7 +95,17 @@ enum StoredLists {
 const POLYGONAL: [(&str, u64); 4] = [("VERTICES", 2), ("LINES", 4), ("POLYGONS", 7), ("TRIANGLE_STRIPS", 6)];
 
 impl Grid {
-    fn outline(self, stores: &Stores, out: &mut dyn Outline) -> Result<()> {
+    fn outline(self, input: &Input, stores: &Stores, out: &mut dyn Outline) -> Result<()> {
+        let data = |stored: Stored| stores.array(stored, Role::Mark.name());
+        let regions = match self.data.regions {
+            Some((_, stored)) => InRegions::Keyed(Keys { keys: data(stored)?, names: Arc::default() }),
+            None => InRegions::Unknown,
+        };
+        let ghosts =
+            self.data.ghosts.map(|(stored, mask)| data(stored).map(|array| (array, mask))).transpose()?;
+        if let Some(block) = self.block {
+            return block.outline(input, stores, self.points, (regions, ghosts), out);
+        }
         let points = self.points.expect("the reader asks for points");
         let (file, coordinates) = (stores.file.clone(), stores.array(points, Role::Coordinate.name())?);
         Points { file, coordinates }.outline(out)?;
@@ -95,11 +119,24 @@ impl Grid {
                 }
             };
             let (lists, connectivity) = section.lists.open(stores, section.count)?;
-            let count = section.count;
-            let file = stores.file.clone();
-            let cells =
-                Cells { file, connectivity, lists, types, count, first_cell, first_point: 0, points: None };
-            cells.outline(out)?;
+            let (file, count) = (stores.file.clone(), section.count);
+            let span = first_cell..first_cell + count;
+            let ghosts = ghosts.as_ref().map(|(array, mask)| (array.part(span.clone()), *mask));
+            let regions = regions.part(span);
+            let (first_point, points) = (0, None);
+            Cells {
+                file,
+                connectivity,
+                lists,
+                types,
+                count,
+                first_cell,
+                first_point,
+                points,
+                regions,
+                ghosts,
+            }
+            .outline(out)?;
             first_cell += count;
         }
         Ok(())
@@ -136,19 +173,15 @@ impl Reader<'_> {
         let is_polygonal = match &dataset.text[..] {
             "UNSTRUCTURED_GRID" => false,
             "POLYDATA" => true,
-            "STRUCTURED_POINTS" | "STRUCTURED_GRID" | "RECTILINEAR_GRID" | "FIELD" => {
-                let error = Error::unsupported(format!(
-                    "a dataset of the kind {} is not read: only UNSTRUCTURED_GRID and POLYDATA are",
-                    dataset.text
-                ));
+            "FIELD" => {
+                let error = Error::unsupported("a dataset of the kind FIELD is not read: it is no mesh");
                 return Err(self.input.source.place(error, Spot::Text(dataset.at)));
             }
-            _ => return Err(self.expected(&dataset, "UNSTRUCTURED_GRID or POLYDATA")),
+            _ => return self.structured(&dataset),
         };
         let sections = if is_polygonal { "POLYGONS" } else { "CELLS, CELL_TYPES" };
         let mut grid = Grid::default();
-        // Number of points or cells that data are given for, once data are what follows.
-        let mut tuples = None;
+        let mut data = Data::default();
         while let Some(section) = self.next_word()? {
             let code = POLYGONAL.iter().find(|row| is_polygonal && row.0 == section.text).map(|row| row.1);
             match &section.text[..] {
@@ -158,18 +191,15 @@ impl Reader<'_> {
                     let count = self.count("the number of cell types")?;
                     grid.types = Some(self.numbers(Number::I32, Role::Code, count)?);
                 }
-                "METADATA" => self.skip_metadata()?,
-                "FIELD" => self.skip_field()?,
-                "POINT_DATA" | "CELL_DATA" => tuples = Some(self.count("the number of points or cells")?),
                 _ if code.is_some() => grid.cells.push(self.cells(code)?),
-                _ => match tuples {
-                    Some(tuples) => self.skip_attribute(&section, tuples)?,
-                    None => {
-                        return Err(self.expected(&section, &format!("a section: POINTS, {sections} ...")));
-                    }
-                },
+                _ => {
+                    let sections = format!("a section: POINTS, {sections} ...");
+                    self.other_section(&section, &sections, &mut data)?;
+                }
             }
         }
+        let cells = grid.cells.iter().fold(0, |sum: u64, section| sum.saturating_add(section.count));
+        grid.data = data.of_cells(cells);
         if grid.points.is_none() {
             return Err(self.truncated("the section POINTS"));
         }
