@@ -42,7 +42,7 @@ pub enum Bound {
     UnpackedRatio,
     /// `window_bytes`
     WindowBytes,
-    /// `line_bytes`
+    /// `line_bytes`; also what stands in its place where a format knows no lines: the length of one word
     LineBytes,
     /// `include_depth`
     IncludeDepth,

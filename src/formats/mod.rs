@@ -91,8 +91,9 @@ pub trait Format: Sync {
         &[]
     }
     /// The files, the main one first, of the mesh that stands under `path`, where a mesh of this format is several files in
-    /// a folder. `path` may be the folder or one of the files; names alone decide.
-    fn files(&self, _path: &Path) -> Option<Result<Vec<PathBuf>>> {
+    /// a folder. `path` is that folder where `is_folder`, else one of the files. Names alone decide, and the disk is asked
+    /// only about names that may be such files: folders with a million others are read through.
+    fn files(&self, _path: &Path, _is_folder: bool) -> Option<Result<Vec<PathBuf>>> {
         None
     }
     /// What the format divides elements into, as its users call it: `physical groups`, `parts`. Its layouts call
@@ -192,7 +193,12 @@ pub fn find(name: &str) -> Option<&'static dyn Format> {
 
 /// The files, the main one first, of a mesh that is several files: [`Format::files`] of whichever format knows them.
 pub fn files(path: &Path) -> Option<Result<Vec<PathBuf>>> {
-    FORMATS.iter().find_map(|format| format.files(path))
+    files_of(path, path.is_dir())
+}
+
+/// As [`files`], for one who knows whether `path` is a folder.
+pub fn files_of(path: &Path, is_folder: bool) -> Option<Result<Vec<PathBuf>>> {
+    FORMATS.iter().find_map(|format| format.files(path, is_folder))
 }
 
 /// Opens the mesh at `path`: a file, or several that [`files`] finds.

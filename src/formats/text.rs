@@ -153,6 +153,23 @@ pub fn tokens(at: u64, bytes: &[u8]) -> impl Iterator<Item = Placed<'_>> {
     })
 }
 
+/// The error of a line, of lines that go on in the next one, or of a word that passes `limits.line_bytes`. It starts at
+/// byte `at`; `what` says which of them.
+pub fn too_long(source: &Source, what: &str, limit: usize, at: u64) -> Error {
+    let error = Error::limit_of(Bound::LineBytes, format!("length of {what}"), format!("{limit} bytes"));
+    source.place(error, crate::input::Spot::Text(at))
+}
+
+/// Where the line ends that `ahead` begins with, at byte `at` of the file: the number of its bytes, and whether a newline
+/// follows. `ahead` goes over the limit or to the file's end. A line over the limit is an error.
+pub fn line_length(source: &Source, ahead: &[u8], limit: usize, at: u64) -> Result<(usize, bool)> {
+    match memchr::memchr(b'\n', &ahead[..ahead.len().min(limit.saturating_add(1))]) {
+        Some(end) => Ok((end, true)),
+        None if ahead.len() <= limit => Ok((ahead.len(), false)),
+        None => Err(too_long(source, "a line", limit, at)),
+    }
+}
+
 /// Reads a text file line by line through windows, for outlines: in bounded memory, and with every line's place.
 #[derive(Debug)]
 pub struct LineReader<'s> {
@@ -198,12 +215,10 @@ impl<'s> LineReader<'s> {
         }
         let Some((start, window)) = &self.window else { return Ok(None) };
         let rest = &window[(at - start) as usize..];
-        let len = found.or_else(|| end_in(*start, window)).unwrap_or(rest.len());
-        if len > self.limit {
-            let error =
-                Error::limit_of(Bound::LineBytes, "length of a line", format!("{} bytes", self.limit));
-            return Err(self.source.place(error, crate::input::Spot::Text(at)));
-        }
+        let len = match found {
+            Some(len) if len <= self.limit => len,
+            _ => line_length(self.source, rest, self.limit, at)?.0,
+        };
         self.at = at + len as u64 + 1;
         let line = &rest[..len];
         Ok(Some(Placed { at, bytes: line.strip_suffix(b"\r").unwrap_or(line) }))
@@ -231,16 +246,10 @@ pub fn end_of_line(input: &Input, source: &Source, at: u64, end: u64) -> Result<
     if at >= end {
         return Ok(end);
     }
-    let limit = input.limits.line_bytes as u64;
-    let window = source.window(at..end.min(at + limit + 1));
-    match memchr::memchr(b'\n', &window) {
-        Some(k) => Ok(at + k as u64 + 1),
-        None if (window.len() as u64) <= limit => Ok(end),
-        None => {
-            let error = Error::limit_of(Bound::LineBytes, "length of a line", format!("{limit} bytes"));
-            Err(source.place(error, crate::input::Spot::Text(at)))
-        }
-    }
+    let limit = input.limits.line_bytes;
+    let window = source.window(at..end.min(at.saturating_add(limit as u64).saturating_add(1)));
+    let (len, ends) = line_length(source, &window, limit, at)?;
+    Ok(if ends { at + len as u64 + 1 } else { end })
 }
 
 #[cfg(test)]

@@ -186,8 +186,7 @@ impl<'i> WordWalk<'i> {
             let whole = len < WORD_BYTES;
             self.at += len as u64;
             if self.at - from >= WORD_BYTES as u64 {
-                let error = Error::limit("length of a word", format!("{WORD_BYTES} bytes"));
-                return Err(self.source.place(error, Spot::Text(from)));
+                return Err(text::too_long(self.source, "a word", WORD_BYTES, from));
             }
             if whole {
                 return Ok(());

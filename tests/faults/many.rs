@@ -1,6 +1,7 @@
 //! T10, T30, T33, T34: many files, and files that are nothing.
 
 use std::fs::{self, File};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -8,7 +9,7 @@ use rustix::process::Signal;
 
 use crate::daemon::{MESH, Site};
 use crate::oracle::{Follower, memory, open_files, told};
-use crate::tools::{done, times};
+use crate::tools::{done, has, times};
 
 /// The kernel keeps this many events for one who does not read them.
 fn queue_of_events() -> u64 {
@@ -157,4 +158,30 @@ fn t33_a_line_without_an_end_nothing_at_all_and_two_bytes_a_letter() {
             size >> 30
         ),
     );
+}
+
+/// What a scan of a million files costs is what it asks the kernel about each.
+#[test]
+fn a_scan_asks_the_kernel_once_about_each_file() {
+    if !has(false, &["strace"]) {
+        return;
+    }
+    let site = Site::new();
+    let files = 2000;
+    for file in 0..files {
+        site.write(&format!("drop/{}/{file}.msh", file / 100), MESH);
+    }
+    assert_eq!(site.once(&["--settle", "50ms", "--quiet"]), Some(0));
+    let plain = site.command(&["--settle", "50ms", "--quiet", "--once"]);
+    let mut command = Command::new("strace");
+    command.args(["-f", "-qq", "-o"]).arg(site.path("trace")).args(["-e", "trace=%file,%desc"]);
+    command.arg(plain.get_program()).args(plain.get_args()).current_dir(site.path("."));
+    let status = command.env_remove("MESHGAUGE_CONFIG").stdout(Stdio::null()).status();
+    assert_eq!(status.expect("strace runs").code(), Some(0));
+    let trace = String::from_utf8_lossy(&crate::oracle::bytes(&site.path("trace"))).into_owned();
+    let about = trace.lines().filter(|line| line.contains(".msh\"")).count();
+    assert_eq!(about, files, "calls that name a mesh");
+    // What is done is looked up together.
+    let all = trace.lines().count();
+    assert!(all < 2 * files, "{all} calls for {files} files");
 }

@@ -14,6 +14,7 @@ mod cut;
 mod flipped;
 mod heap;
 mod limits;
+mod lines;
 #[path = "../input/packing.rs"]
 #[expect(dead_code, reason = "shared with the tests of input")]
 mod packing;

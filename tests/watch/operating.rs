@@ -33,7 +33,45 @@ fn sighup_takes_a_sound_configuration_and_refuses_another() {
     site.write("meshgauge.toml", "[watch]\nlog = \"elsewhere.jsonl\"");
     daemon.signal(Signal::HUP);
     daemon.wait("another configuration", || site.events("config.reloaded").len() == 2);
-    assert!(site.events("config.reloaded")[1]["needs_restart"].is_string());
+    assert_eq!(site.events("config.reloaded")[1]["needs_restart"], "watch.log");
+}
+
+#[test]
+fn sighup_takes_other_tolerances_of_baselines_and_asks_for_events_or_not() {
+    let site = Site::new();
+    site.write("meshgauge.toml", "");
+    let daemon = site.start(&ONE_WORKER);
+    let lower = |height: &str| MESH.replace("4 0 0 1\n", &format!("4 0 0 {height}\n"));
+    let mut reloads = 0;
+    let mut reload = |text: &str| {
+        site.write("meshgauge.toml", text);
+        daemon.signal(Signal::HUP);
+        reloads += 1;
+        daemon.wait("the new configuration", || site.events("config.reloaded").len() == reloads);
+        assert!(site.events("config.reloaded")[reloads - 1].get("needs_restart").is_none());
+    };
+    // The versions of one mesh, each with what it is called beside the first.
+    let mut scored = 0;
+    let mut land = |height: &str, regressed: usize| {
+        site.write("drop/a.msh", &lower(height));
+        scored += 1;
+        daemon.wait("its score", || site.events_of("mesh.scored", "a.msh").len() == scored);
+        daemon.wait("its end", || {
+            site.summary("a.summary.json")["mesh"]["xxh3"] == site.events("mesh.scored")[scored - 1]["xxh3"]
+        });
+        assert_eq!(site.events("mesh.regressed").len(), regressed, "{height}");
+    };
+    land("1", 0);
+    land("0.1", 1);
+    reload(
+        "[compare]\nminimum = { absolute = 1.0 }\nmean = { absolute = 1.0 }\nquantile = { absolute = 1.0 }\ndistance = 1.0\n\
+            under = 1e9\nchecks = 1e9\nvolume = 1.0\nsize = 1e9\n[watch]\nevents = false\nscan = \"500ms\"\n",
+    );
+    land("0.11", 1);
+    reload("[baseline]\ncompare = false\n[watch]\nscan = \"500ms\"\n");
+    land("0.01", 1);
+    reload("");
+    land("0.02", 2);
 }
 
 #[test]

@@ -47,8 +47,14 @@ fn with_sidecars_once_leaves_what_has_none() {
 #[test]
 fn a_mesh_that_arrives_by_rename_is_whole_where_that_is_agreed() {
     let site = Site::new();
-    site.write("meshgauge.toml", "[watch]\ndone = \"rename\"\n");
+    site.write("meshgauge.toml", "[watch]\ndone = \"rename\"\n[telemetry]\ninterval = \"100ms\"\n");
     let daemon = site.start(&NEVER);
+    // Only after its first scan does it hear of what is renamed.
+    daemon.wait("the first scan", || {
+        let status = site.text("results/.meshgauge/status.json").unwrap_or_default();
+        let status: serde_json::Value = serde_json::from_str(&status).unwrap_or_default();
+        status["watches"][0]["scans"].as_u64() > Some(0)
+    });
     site.write("drop/.a.msh.part", MESH);
     site.write("drop/written.msh", MESH);
     daemon.wait_for("mesh.detected", "written.msh");

@@ -28,7 +28,7 @@ pub fn publish(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
 /// A temporary file beside `path` that holds this.
 fn unfinished(path: &Path, content: &[u8]) -> io::Result<NamedTempFile> {
     let folder = folder_of(path);
-    fs::create_dir_all(folder)?;
+    make_folder(folder)?;
     let mut file = tempfile::Builder::new()
         .prefix(UNFINISHED.0)
         .suffix(UNFINISHED.1)
@@ -75,13 +75,47 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn sync_folder(folder: &Path) -> io::Result<()> {
+/// Makes a folder, and those above it that are missing, so that its name is there after a power loss.
+pub fn make_folder(folder: &Path) -> io::Result<()> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let made = match fs::create_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            make_folder(folder_of(folder))?;
+            fs::create_dir(folder)
+        }
+        made => made,
+    };
+    match made {
+        // Another process was quicker.
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
+        made => made?,
+    }
+    sync_folder(folder_of(folder))
+}
+
+/// Has the names in a folder on disk.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_is_made_with_those_above_it_and_a_file_is_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let deep = folder.path().join("a/b/c");
+        for _ in 0..2 {
+            make_folder(&deep).expect("made, or there");
+        }
+        fs::write(deep.join("file"), "").expect("written");
+        let error = make_folder(&deep.join("file")).expect_err("a file");
+        assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
+        assert!(make_folder(&deep.join("file/below")).is_err());
+    }
 
     #[test]
     fn a_published_file_replaces_the_old_one_and_leaves_nothing_beside() {

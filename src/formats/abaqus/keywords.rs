@@ -4,8 +4,9 @@ use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 
-use crate::error::{Bound, Error, Result, excerpt};
-use crate::input::{Limits, Source, Spot, Window};
+use crate::error::{Error, Result, excerpt};
+use crate::formats::text;
+use crate::input::{Limits, Source, Window};
 
 /// Finds keyword lines: looks for stars, not at every line.
 pub(super) struct Scanner<'s> {
@@ -84,12 +85,7 @@ impl Keyword {
             let next = source.peek(end..end + limits.line_bytes as u64);
             let text = next.split(|b| *b == b'\n').next().unwrap_or_default();
             if line.len() + text.len() >= limits.line_bytes {
-                let error = Error::limit_of(
-                    Bound::LineBytes,
-                    "length of a keyword line",
-                    format!("{} bytes", limits.line_bytes),
-                );
-                return Err(source.place(error, Spot::Text(at)));
+                return Err(text::too_long(source, "a keyword line", limits.line_bytes, at));
             }
             line.extend_from_slice(text.trim_ascii());
             end = (end + text.len() as u64 + 1).min(source.len());

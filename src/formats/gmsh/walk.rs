@@ -4,9 +4,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::rows::Rows;
-use crate::error::{Bound, Error, Result, excerpt};
+use crate::error::{Error, Result, excerpt};
 use crate::formats::PIECE_BYTES;
-use crate::formats::text::Placed;
+use crate::formats::text::{self, Placed};
 use crate::input::{Input, Source, Spot, Window};
 
 /// A place in a file, and the bytes that follow it.
@@ -80,29 +80,19 @@ impl<'i> Walk<'i> {
     /// The next line that is not blank, or `None` at the end of the file.
     pub(super) fn line(&mut self) -> Result<Option<Placed<'_>>> {
         loop {
-            let (at, limit) = (self.at, self.line_bytes);
+            let (source, at, limit) = (self.source, self.at, self.line_bytes);
             let ahead = self.ahead();
             if ahead.is_empty() {
                 return Ok(None);
             }
-            let end = memchr::memchr(b'\n', ahead);
-            let len = end.unwrap_or(ahead.len());
-            if len > limit {
-                return Err(self.too_long());
-            }
+            let (len, ends) = text::line_length(source, ahead, limit, at)?;
             let blank = ahead[..len].trim_ascii().is_empty();
-            self.at += (len + usize::from(end.is_some())) as u64;
+            self.at += (len + usize::from(ends)) as u64;
             if !blank {
                 let from = (at - self.window.0) as usize;
                 return Ok(Some(Placed { at, bytes: self.window.1[from..from + len].trim_ascii_end() }));
             }
         }
-    }
-
-    fn too_long(&self) -> Error {
-        let error =
-            Error::limit_of(Bound::LineBytes, "length of a line", format!("{} bytes", self.line_bytes));
-        self.source.place(error, Spot::Text(self.at))
     }
 
     /// The next line that is not blank as one row of numbers.
@@ -120,16 +110,16 @@ impl<'i> Walk<'i> {
         let begin = self.at;
         let mut rows = 0;
         while rows < most && self.at - begin < bytes {
-            let limit = self.line_bytes;
+            let (source, at, limit) = (self.source, self.at, self.line_bytes);
             let ahead = self.ahead();
-            let near = &ahead[..ahead.len().min(STEP)];
-            let end = memchr::memrchr(b'\n', near).or_else(|| memchr::memchr(b'\n', ahead));
-            let Some(end) = end else {
-                return Err(if ahead.len() > limit {
-                    self.too_long()
-                } else {
-                    self.missing(rows, most, what)
-                });
+            // Every step starts with a line, so a line over the limit is one that has no end near.
+            let near = &ahead[..ahead.len().min(STEP).min(limit.saturating_add(1))];
+            let end = match memchr::memrchr(b'\n', near) {
+                Some(end) => end,
+                None => match text::line_length(source, ahead, limit, at)? {
+                    (end, true) => end,
+                    (_, false) => return Err(self.missing(rows, most, what)),
+                },
             };
             let mut step = &ahead[..=end];
             let mut found = memchr::memchr_iter(b'\n', step).count() as u64;

@@ -49,8 +49,8 @@ impl Format for OpenFoam {
         header::is_of_mesh(head)
     }
 
-    fn files(&self, path: &Path) -> Option<Result<Vec<PathBuf>>> {
-        if path.is_dir() {
+    fn files(&self, path: &Path, is_folder: bool) -> Option<Result<Vec<PathBuf>>> {
+        if is_folder {
             return files_of_folder(path);
         }
         let name = path.file_name()?.to_str()?;

@@ -118,6 +118,9 @@ impl<'s> Reader<'s> {
                 self.at += len as u64;
                 Ok(if first == Some(b'-') { -value } else { value })
             }
+            None if ahead.len() >= LONGEST && ahead[..LONGEST].iter().all(u8::is_ascii_digit) => {
+                Err(text::too_long(self.source, "a number", LONGEST, self.at))
+            }
             None => Err(self.unlike(what)),
         }
     }

@@ -89,8 +89,7 @@ impl<'i> TokenReader<'i> {
         let len = ahead.iter().take(LONGEST + 1).position(|b| is_blank(*b) || *b == comment);
         let len = len.unwrap_or(ahead.len());
         if len > LONGEST {
-            let expected = format!("a word or number of at most {LONGEST} bytes");
-            return Err(self.source.malformed_text(at, expected));
+            return Err(text::too_long(self.source, "a word", LONGEST, at));
         }
         self.at += len as u64;
         let from = (at - self.window.0) as usize;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::{Arc, LazyLock};
 
 use super::{faces, rows};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::formats::text::{self, LineReader, Placed};
 use crate::formats::{ElementLayout, ElementSink, Format, HEAD_BYTES, NodeBatch, NodeLayout};
 use crate::formats::{Outline, PIECE_BYTES, Piece};
@@ -127,8 +127,7 @@ fn next_keyword(source: &Source, most: usize, lines: &mut LineReader<'_>) -> Res
     let mut goes_on = continued(line.bytes).is_some();
     while goes_on {
         if lines.position() - start > most as u64 {
-            let error = Error::limit("length of a statement", format!("{most} bytes"));
-            return Err(source.place(error, Spot::Text(start)));
+            return Err(text::too_long(source, "a statement", most, start));
         }
         match lines.next_line()? {
             Some(line) => goes_on = line.bytes.ends_with(b"\\"),

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::formats::binary::Endian;
 use crate::formats::text::{self, LineReader};
-use crate::input::{Input, Spot};
+use crate::input::Input;
 
 use super::role::Role;
 use crate::formats::array::{Number, Origin, Stored, Unpacked};
@@ -144,8 +144,7 @@ fn tokens(
             }
         }
         if i == 0 && !is_last {
-            let error = Error::limit("length of a number", format!("{STEP} bytes"));
-            return Err(input.source.place(error, Spot::Text(at)));
+            return Err(text::too_long(&input.source, "a number", STEP as usize, at));
         }
         at += i as u64;
     }

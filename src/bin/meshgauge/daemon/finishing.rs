@@ -34,6 +34,11 @@ impl Watching<'_> {
 
     /// Puts down what workers found, unless there is no room: then it is tried again when there is.
     pub(super) fn put_down(&mut self) -> anyhow::Result<()> {
+        // We may have stood still since the loop last turned.
+        let held = self.record.hold();
+        if self.bear(held)?.is_none() {
+            return Ok(());
+        }
         while let Some(outcome) = self.pending.pop_front() {
             let result = self.finish(&outcome);
             if self.bear(result)?.is_none() {

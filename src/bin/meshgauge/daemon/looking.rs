@@ -1,7 +1,7 @@
 //! What is seen in the drop, and what follows from it.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::mounts::{self, Mounted};
 use super::producer::Word;
@@ -13,12 +13,16 @@ use crate::exit::Status;
 use crate::folder::Found;
 use crate::identity::Identity;
 use crate::names::has_mesh_extension;
+use crate::state::Id;
 
 /// Names of arrivals that were not come upon are kept up to this number.
 const MOST_RENAMED: usize = 10_000;
 
 /// What could not be looked at is remembered up to this number.
 const MOST_PROBLEMS: usize = 10_000;
+
+/// How often `--once` looks for files that it has waited for in vain: that goes over all of them.
+const BETWEEN_STRAGGLERS: Duration = Duration::from_millis(500);
 
 impl Watching<'_> {
     /// Asks the threads for what is due.
@@ -112,18 +116,11 @@ impl Watching<'_> {
         for path in &report.gone {
             self.tracking.remove(path);
         }
-        let mut unseen = 0;
-        for seen in report.seen {
-            let result = self.see(place, seen);
-            match self.bear(result)? {
-                Some(true) => {}
-                Some(false) => unseen += 1,
-                // The next scan, when there is room again, comes upon the rest.
-                None => break,
-            }
-        }
+        // Where there is no room, the next scan, when there is some again, comes upon the rest.
+        let seen = self.see(place, report.seen);
+        let left_over = self.bear(seen)?.unwrap_or(0);
         if let Some(mount) = self.scanners.mount(place.mount) {
-            mount.left_over += unseen;
+            mount.left_over += left_over;
         }
         if is_last { self.end(place, report.end) } else { Ok(()) }
     }
@@ -167,8 +164,26 @@ impl Watching<'_> {
         }
     }
 
-    /// A file was seen; says whether there was room for it.
-    fn see(&mut self, place: Place, seen: Seen) -> anyhow::Result<bool> {
+    /// Files were seen; says for how many of them there was no room.
+    fn see(&mut self, place: Place, seen: Vec<Seen>) -> anyhow::Result<usize> {
+        let mut unknown = Vec::new();
+        for seen in seen {
+            unknown.extend(self.recognize(place, seen)?);
+        }
+        let unknown = self.record.undone(unknown, |(path, look)| Id::of(path, &look.identity))?;
+        let room = unknown.len().min(self.tracking.room());
+        let (new, left_over) = unknown.split_at(room);
+        let is_named = |path: &Path| has_mesh_extension(path.file_name().unwrap_or_default());
+        let named = new.iter().filter(|(path, _)| is_named(path));
+        self.record.detected(named.map(|(path, look)| (path.as_path(), &look.identity)))?;
+        for (path, look) in new {
+            self.tracking.add(path.clone(), place, *look, is_named(path));
+        }
+        Ok(left_over.len())
+    }
+
+    /// A file was seen that may be another one, or another version, than those that are known: then it is returned.
+    fn recognize(&mut self, place: Place, seen: Seen) -> anyhow::Result<Option<(PathBuf, Look)>> {
         let Seen { path, found, word } = seen;
         let identity = match found {
             Found::File(identity) => identity,
@@ -177,30 +192,19 @@ impl Watching<'_> {
                 if !self.record.is_done(&path, &Identity::default())? {
                     self.record.ignored(&path, &Identity::default(), &format!("it is {what}"))?;
                 }
-                return Ok(true);
+                return Ok(None);
             }
         };
         let word = if self.renamed.remove(&path) { Word::Whole } else { word };
-        let config = std::sync::Arc::clone(&self.config);
-        let settle = self.scanners.mount(place.mount).map(|mount| mount.settle(&config.watch));
+        let watch = &self.config.watch;
+        let settle = self.scanners.mount(place.mount).map(|mount| mount.settle(watch));
         let look = Look { identity, word, now: Instant::now(), settle: settle.unwrap_or_default() };
         if self.tracking.contains(&path) {
             self.tracking.seen(&path, place);
             self.tracking.look(&path, look);
-            return Ok(true);
+            return Ok(None);
         }
-        if self.record.is_done(&path, &identity)? || (self.mode.once && word == Word::NotYet) {
-            return Ok(true);
-        }
-        if self.tracking.is_full() {
-            return Ok(false);
-        }
-        let announced = has_mesh_extension(path.file_name().unwrap_or_default());
-        if announced {
-            self.record.detected(&path, &identity)?;
-        }
-        self.tracking.add(path, place, look, announced);
-        Ok(true)
+        Ok((!self.mode.once || word != Word::NotYet).then_some((path, look)))
     }
 
     /// Says what could not be looked at, once.
@@ -218,16 +222,17 @@ impl Watching<'_> {
 
     /// With `--once` a file that is written for ever must not keep us for ever, nor may a mount that hangs.
     fn give_up(&mut self) {
-        if !self.mode.once {
+        if !self.mode.once || self.looked_for_stragglers.elapsed() < BETWEEN_STRAGGLERS {
             return;
         }
+        self.looked_for_stragglers = Instant::now();
         for path in self.tracking.give_up(Instant::now(), self.config.watch.patience.0) {
             let path = self.places.drop.join(path);
             eprintln!("meshgauge: {}: it is still being written; left for the next run", path.display());
             self.status = self.status.max(Status::Unreadable);
         }
         for (at, mount) in self.scanners.mounts() {
-            if mount.hangs() && self.problems.insert(at.clone()) {
+            if mount.hangs().is_some() && self.problems.insert(at.clone()) {
                 let at = self.places.drop.join(at);
                 eprintln!("meshgauge: {}: the file system does not answer", at.display());
                 self.status = self.status.max(Status::Unreadable);

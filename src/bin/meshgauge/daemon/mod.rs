@@ -14,6 +14,7 @@ mod log;
 mod looking;
 mod mount;
 mod mounts;
+mod owner;
 mod pool;
 mod process;
 mod producer;
@@ -40,9 +41,11 @@ use anyhow::Context;
 
 use crate::config::{Config, Watch};
 use crate::exit::{Status, Usage};
+use crate::file_system;
 use crate::state::State;
 
 use log::{Event, Log};
+use owner::Owner;
 use record::Record;
 use telemetry::Telemetry;
 use watching::Watching;
@@ -150,6 +153,7 @@ fn start(
 ) -> anyhow::Result<(File, Record)> {
     record::make_folders([&places.results, &places.state])?;
     let lock = lock(&places.state)?;
+    let owner = file_system::network(&places.state).map(|_| Owner::take(&places.state)).transpose()?;
     // It listens: a start that is made again must not do that twice.
     let telemetry = match telemetry {
         Some(telemetry) => telemetry,
@@ -159,6 +163,7 @@ fn start(
     let state = State::open(&places.state)?;
     log.hear_with(telemetry.heard());
     let mut record = Record::new(log, state, places, mode.quiet)?;
+    record.belongs_to(owner);
     record.configure(config)?;
     if torn > 0 {
         record.event(Event::warn("log.repaired").with("bytes", torn))?;

@@ -1,12 +1,54 @@
 //! A file system that is mounted in the drop: what is known of it, and what is due.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::Sender;
 
 use super::scanners::Ask;
 use crate::config::Watch;
+
+/// How a thread shows that the file system answers it.
+#[derive(Debug)]
+pub(super) struct Pulse {
+    start: Instant,
+    /// Milliseconds from the start to the last answer.
+    last: AtomicU64,
+    /// Whether it waits for somebody to hear what it has to tell.
+    telling: AtomicBool,
+}
+
+impl Pulse {
+    /// It beats now.
+    pub fn new() -> Self {
+        Self { start: Instant::now(), last: AtomicU64::new(0), telling: AtomicBool::new(false) }
+    }
+
+    /// The file system answered.
+    pub fn beat(&self) {
+        self.last.store(self.start.elapsed().as_millis() as u64, Ordering::Relaxed);
+    }
+
+    /// Does something that may wait for whoever listens, which is not the file system's fault.
+    pub fn while_telling<T>(&self, tell: impl FnOnce() -> T) -> T {
+        self.telling.store(true, Ordering::Relaxed);
+        let told = tell();
+        self.beat();
+        self.telling.store(false, Ordering::Relaxed);
+        told
+    }
+
+    /// For how long the file system has not answered.
+    fn silence(&self) -> Duration {
+        if self.telling.load(Ordering::Relaxed) {
+            return Duration::ZERO;
+        }
+        let last = Duration::from_millis(self.last.load(Ordering::Relaxed));
+        self.start.elapsed().saturating_sub(last)
+    }
+}
 
 /// So many problems of a scan are kept in words.
 const PROBLEMS: usize = 20;
@@ -25,6 +67,8 @@ pub struct Mount {
     pub network: bool,
     /// Since when the thread has been at work.
     pub busy: Option<Instant>,
+    /// How it shows that it gets on.
+    pub(super) pulse: Arc<Pulse>,
     /// When it is to be read through next.
     pub next_scan: Instant,
     /// When what may still be changing is to be looked at next.
@@ -62,6 +106,7 @@ impl Mount {
     pub(super) fn ask(&mut self, ask: Ask) -> bool {
         let asked = self.busy.is_none() && self.asks.try_send(ask).is_ok();
         if asked {
+            self.pulse.beat();
             self.busy = Some(Instant::now());
         }
         asked
@@ -78,9 +123,9 @@ impl Mount {
         }
     }
 
-    /// Whether it has not answered for too long.
-    pub fn hangs(&self) -> bool {
-        self.busy.is_some_and(|since| since.elapsed() > HUNG)
+    /// For how long it has not answered, if that is too long.
+    pub fn hangs(&self) -> Option<Duration> {
+        self.busy.map(|_| self.pulse.silence()).filter(|silence| *silence > HUNG)
     }
 
     /// Something happened: the next scan comes sooner. A scan that takes long is not made at every event.
@@ -104,5 +149,23 @@ impl Mount {
     /// How long to wait between two looks at a file that may still be changing.
     pub fn between_looks(&self, watch: &Watch) -> Duration {
         (self.settle(watch) / 4).clamp(Duration::from_millis(20), Duration::from_secs(5))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drop of 100 000 new files was said not to answer, because the loop took longer to hear of them than `HUNG`.
+    #[test]
+    fn a_thread_that_waits_for_the_loop_is_no_file_system_that_hangs() {
+        let (pulse, wait) = (Pulse::new(), Duration::from_millis(50));
+        std::thread::sleep(wait);
+        assert!(pulse.silence() >= wait);
+        pulse.while_telling(|| {
+            std::thread::sleep(wait);
+            assert_eq!(pulse.silence(), Duration::ZERO);
+        });
+        assert!(pulse.silence() < wait);
     }
 }

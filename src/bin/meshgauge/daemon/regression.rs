@@ -5,21 +5,33 @@ use std::path::Path;
 use meshgauge::Summary;
 use meshgauge::compare::{Comparison, Finding, Outcome, Tolerances, compare};
 
+use super::Places;
 use super::log::Event;
 use crate::baseline::Baselines;
+use crate::config::Config;
+use crate::exit::Usage;
 use crate::series::Naming;
 
 /// What meshes are compared with, and how.
 pub struct Watchman {
     /// The baselines.
-    pub baselines: Baselines,
+    baselines: Baselines,
     /// Which meshes are one part.
-    pub naming: Naming,
+    naming: Naming,
     /// What may change.
-    pub tolerances: Tolerances,
+    tolerances: Tolerances,
 }
 
 impl Watchman {
+    /// Who compares as the configuration says; `None` where it says that nothing is compared.
+    pub fn of(config: &Config, places: &Places) -> Result<Option<Self>, Usage> {
+        if !config.baseline.compare {
+            return Ok(None);
+        }
+        let baselines = Baselines::of(&places.state);
+        Ok(Some(Self { baselines, naming: config.baseline.naming()?, tolerances: config.compare }))
+    }
+
     /// The event that tells that a mesh is worse or better than its baseline. The first mesh of a part becomes it.
     pub fn look(&self, path: &Path, summary: &Summary) -> anyhow::Result<Option<Event>> {
         let part = self.naming.part(path);

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
-use super::mount::Mount;
+use super::mount::{Mount, Pulse};
 use super::mounts::Mounted;
 use super::producer::{Producer, Word};
 use crate::file_system;
@@ -142,9 +142,11 @@ impl Scanners {
         self.next_id += 1;
         // To ask a mount that hangs what it is would hang.
         let network = file_system::is_network(kind) || (is_root && file_system::network(root).is_some());
+        let pulse = Arc::new(Pulse::new());
+        let beating = Arc::clone(&pulse);
         std::thread::spawn(move || {
             for ask in queue {
-                if answer(id, ask, network, &sender).is_break() {
+                if answer(id, ask, network, &sender, &beating).is_break() {
                     break;
                 }
             }
@@ -160,6 +162,7 @@ impl Scanners {
             kind: kind.to_owned(),
             network,
             busy: None,
+            pulse,
             next_scan: now,
             next_look: now,
             scanned: None,
@@ -218,15 +221,19 @@ impl Report {
 }
 
 /// Does what is asked for; stops when nobody listens any more.
-fn answer(mount: u64, ask: Ask, fresh: bool, sender: &Sender<Report>) -> ControlFlow<()> {
+fn answer(mount: u64, ask: Ask, fresh: bool, sender: &Sender<Report>, pulse: &Pulse) -> ControlFlow<()> {
     let mut report = Report::new(mount);
-    let pass_on = |report: &mut Report| match sender.send(std::mem::replace(report, Report::new(mount))) {
-        Ok(()) => ControlFlow::Continue(()),
-        Err(_) => ControlFlow::Break(()),
+    let pass_on = |report: &mut Report| {
+        let full = std::mem::replace(report, Report::new(mount));
+        match pulse.while_telling(|| sender.send(full)) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
     };
     let end = match ask {
         Ask::Scan(rules, walk) => {
             walk.each(&mut |sight| {
+                pulse.beat();
                 match sight {
                     Sight::File(path, found) => report.seen.extend(rules.see(path, found)),
                     Sight::Folder(path, place) => report.folders.push((path, place)),
@@ -237,15 +244,14 @@ fn answer(mount: u64, ask: Ask, fresh: bool, sender: &Sender<Report>) -> Control
             End::Scan
         }
         Ask::Look(rules, paths) => {
-            for path in paths {
-                match rules.walk.look(&path, fresh) {
+            rules.walk.look_at(paths, fresh, &mut |path, found| {
+                pulse.beat();
+                match found {
                     Some(found) => report.seen.extend(rules.see(path, found)),
                     None => report.gone.push(path),
                 }
-                if report.is_full() {
-                    pass_on(&mut report)?;
-                }
-            }
+                if report.is_full() { pass_on(&mut report) } else { ControlFlow::Continue(()) }
+            })?;
             End::Look
         }
     };

@@ -93,9 +93,9 @@ impl Tracking {
         self.files.is_empty()
     }
 
-    /// Whether there is no room for another file.
-    pub fn is_full(&self) -> bool {
-        self.files.len() >= MOST
+    /// For how many further files there is room.
+    pub fn room(&self) -> usize {
+        MOST.saturating_sub(self.files.len())
     }
 
     /// Whether there is room for many files.

@@ -34,6 +34,8 @@ const LONGEST_ROUND: Duration = Duration::from_secs(2);
 /// Everything that the loop owns.
 pub struct Watching<'c> {
     pub(super) config: Arc<Config>,
+    /// That of the start.
+    pub(super) started: Arc<Config>,
     /// The same, for workers that share the processors.
     pub(super) worker_config: Arc<Config>,
     pub(super) read_config: ReadConfig<'c>,
@@ -49,6 +51,7 @@ pub struct Watching<'c> {
     /// What could not be looked at, to complain about it once.
     pub(super) problems: HashSet<PathBuf>,
     pub(super) tracking: Tracking,
+    pub(super) looked_for_stragglers: Instant,
     pub(super) pool: Pool,
     /// What workers found and is not put down yet.
     pub(super) pending: VecDeque<Outcome>,
@@ -81,6 +84,8 @@ impl<'c> Watching<'c> {
         read_config: ReadConfig<'c>,
     ) -> Self {
         let rules = Arc::new(rules(&config, &places));
+        let worker_config = Arc::new(shared_out(config.clone()));
+        let config = Arc::new(config);
         Self {
             root: std::fs::canonicalize(&places.drop).ok(),
             scanners: Scanners::new(),
@@ -88,6 +93,7 @@ impl<'c> Watching<'c> {
             renamed: HashSet::new(),
             problems: HashSet::new(),
             tracking: Tracking::default(),
+            looked_for_stragglers: Instant::now(),
             pool: Pool::new(&places.drop, telemetry.work()),
             pending: VecDeque::new(),
             degraded: None,
@@ -97,8 +103,9 @@ impl<'c> Watching<'c> {
             scored: 0,
             failed: 0,
             ready: false,
-            worker_config: Arc::new(shared_out(config.clone())),
-            config: Arc::new(config),
+            worker_config,
+            started: Arc::clone(&config),
+            config,
             read_config,
             places,
             mode,
@@ -129,6 +136,8 @@ impl<'c> Watching<'c> {
 
     fn watch(&mut self, requests: &Requests) -> anyhow::Result<End> {
         loop {
+            let held = self.record.hold();
+            self.bear(held)?;
             self.recover()?;
             self.mind_log()?;
             self.ask_scanners()?;
@@ -153,7 +162,8 @@ impl<'c> Watching<'c> {
         self.tracking.is_empty()
             && self.pending.is_empty()
             && self.scanners.mounts().values().all(|mount| {
-                (mount.scanned.is_some() && mount.left_over == 0 && mount.busy.is_none()) || mount.hangs()
+                (mount.scanned.is_some() && mount.left_over == 0 && mount.busy.is_none())
+                    || mount.hangs().is_some()
             })
     }
 
@@ -198,8 +208,13 @@ impl<'c> Watching<'c> {
 
     /// How many workers have a file on a mount that hangs, and are none to reckon with.
     fn stuck(&self) -> usize {
-        let hanging: Vec<_> =
-            self.scanners.mounts().values().filter(|mount| mount.hangs()).map(|mount| mount.id).collect();
+        let hanging: Vec<_> = self
+            .scanners
+            .mounts()
+            .values()
+            .filter(|mount| mount.hangs().is_some())
+            .map(|mount| mount.id)
+            .collect();
         if hanging.is_empty() {
             return 0;
         }

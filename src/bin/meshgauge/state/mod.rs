@@ -33,7 +33,8 @@ pub use versions::{Failed, Stage, Tries};
 pub const FILE: &str = "state.db";
 
 /// The steps that lead to the present schema; `user_version` counts those that were made.
-const MIGRATIONS: [&str; 2] = [include_str!("schema-1.sql"), include_str!("schema-2.sql")];
+const MIGRATIONS: [&str; 3] =
+    [include_str!("schema-1.sql"), include_str!("schema-2.sql"), include_str!("schema-3.sql")];
 
 /// Another program that reads or edits may hold the database this long.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -118,6 +119,24 @@ mod tests {
         drop(state);
         let error = State::open(folder.path()).err().expect("it must not be opened");
         assert!(format!("{error:#}").contains("later version"), "{error:#}");
+    }
+
+    #[test]
+    fn a_database_of_an_earlier_version_is_brought_up_to_date_with_what_it_holds() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let old = Connection::open(folder.path().join(FILE)).expect("a database");
+        old.execute_batch(MIGRATIONS[0]).expect("the first schema");
+        old.execute_batch("INSERT INTO logged VALUES ('7', 'mesh.scored'); PRAGMA user_version = 1")
+            .expect("filled");
+        drop(old);
+        let state = State::open(folder.path()).expect("it is brought up to date");
+        for event in ["mesh.scored", "mesh.regressed"] {
+            let logged = Logged { id: "7".into(), event: event.into() };
+            state.note_logged(&logged).expect("the log tells two things of a version");
+        }
+        let count: u32 =
+            state.connection.query_row("SELECT count(*) FROM logged", [], |row| row.get(0)).expect("a count");
+        assert_eq!(count, 2);
     }
 
     #[test]

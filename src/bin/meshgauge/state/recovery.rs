@@ -46,6 +46,11 @@ impl State {
         Ok(())
     }
 
+    /// Has all that was committed on disk: of what comes later the machine's power may take some.
+    pub fn sync(&self) -> anyhow::Result<()> {
+        Ok(self.connection.query_row("PRAGMA wal_checkpoint(PASSIVE)", [], |_| Ok(()))?)
+    }
+
     /// Puts down that the log tells an outcome which the database may not hold.
     pub fn note_logged(&self, logged: &Logged) -> anyhow::Result<()> {
         let insert = "INSERT OR REPLACE INTO logged SELECT ?1, ?2 WHERE NOT EXISTS

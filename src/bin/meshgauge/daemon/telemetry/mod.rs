@@ -115,10 +115,10 @@ impl Telemetry {
 
     /// Looks which file systems answer.
     pub fn mounts(&mut self, mounts: &BTreeMap<PathBuf, Mount>) {
-        let silent = mounts.iter().find_map(|(at, mount)| Some((at, mount.busy.filter(|_| mount.hangs())?)));
-        let words = silent.map(|(at, since)| {
+        let silent = mounts.iter().find_map(|(at, mount)| Some((at, mount.hangs()?)));
+        let words = silent.map(|(at, silence)| {
             let at = self.places.drop.join(at);
-            let seconds = since.elapsed().as_secs();
+            let seconds = silence.as_secs();
             format!("{}: the file system has not answered for {seconds} s", at.display())
         });
         if words.is_some() || self.degraded.contains_key("mount") {

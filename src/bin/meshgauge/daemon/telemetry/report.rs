@@ -65,7 +65,7 @@ pub fn watched(drop: &Path, mounts: &BTreeMap<PathBuf, Scanned>, made: Option<(D
         path: drop.join(at).as_path().into(),
         kind: mount.kind.clone(),
         network: mount.network,
-        hangs_seconds: mount.busy.filter(|_| mount.hangs()).map(|since| since.elapsed().as_secs_f64()),
+        hangs_seconds: mount.hangs().map(|silence| silence.as_secs_f64()),
     };
     Watched {
         drop: drop.into(),

@@ -1,22 +1,29 @@
 //! The log of results: JSON lines, each whole or absent.
 
+mod event;
+mod lines;
+
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Instant, SystemTime};
+use std::time::Instant;
 
 use anyhow::Context;
 use rustix::fs::FallocateFlags;
 use rustix::io::Errno;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::rotation;
 use super::telemetry::Heard;
 use crate::config;
-use crate::path_text::PathText;
+use crate::publish;
 use crate::state::{LogMark, Logged};
+
+pub use event::Event;
+pub use lines::CHANGES;
+use lines::{read_outcomes, refuse_other_text, whole_lines};
 
 /// The log, open to append to.
 pub struct Log {
@@ -28,60 +35,16 @@ pub struct Log {
     heard: Option<Arc<Heard>>,
 }
 
-/// One line of the log: `timestamp`, `level`, `event`, `mesh` where it is about one, then the rest.
-pub struct Event(Map<String, Value>);
-
-impl Event {
-    /// An event that is worth knowing.
-    pub fn info(name: &str) -> Self {
-        Self::new("info", name)
-    }
-
-    /// An event that somebody should look at.
-    pub fn warn(name: &str) -> Self {
-        Self::new("warn", name)
-    }
-
-    /// An event that went wrong.
-    pub fn error(name: &str) -> Self {
-        Self::new("error", name)
-    }
-
-    fn new(level: &str, name: &str) -> Self {
-        let now = humantime::format_rfc3339_millis(SystemTime::now()).to_string();
-        let head = [("timestamp", now.as_str()), ("level", level), ("event", name)];
-        Self(head.into_iter().map(|(key, value)| (key.to_owned(), value.into())).collect())
-    }
-
-    /// About the mesh at `path` within the drop. `mesh` is for people; the bytes of a name that is not UTF-8 stand
-    /// beside it.
-    pub fn mesh(self, path: &Path) -> Self {
-        let event = self.with("mesh", path.to_string_lossy());
-        match PathText::from(path) {
-            PathText::Text(_) => event,
-            PathText::Bytes(bytes) => event.with("mesh_bytes", bytes),
-        }
-    }
-
-    /// The event's name.
-    pub fn name(&self) -> &str {
-        self.0["event"].as_str().unwrap_or_default()
-    }
-
-    /// With a further field.
-    pub fn with(mut self, key: impl Into<String>, value: impl Into<Value>) -> Self {
-        self.0.insert(key.into(), value.into());
-        self
-    }
-}
-
 impl Log {
     /// Opens the log and cuts off what an earlier process did not get to finish; says how many bytes that was.
     pub fn open(path: &Path) -> io::Result<(Self, u64)> {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder)?;
-        }
+        let folder = folder_of(path);
+        publish::make_folder(folder)?;
+        let is_new = !path.exists();
         let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+        if is_new {
+            publish::sync_folder(folder)?;
+        }
         let whole = whole_lines(&mut file)?;
         let torn = file.metadata()?.len() - whole;
         if torn > 0 {
@@ -133,7 +96,7 @@ impl Log {
 
     /// The folder of the log.
     pub fn folder(&self) -> &Path {
-        self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+        folder_of(&self.path)
     }
 
     /// The end of the log.
@@ -211,65 +174,17 @@ impl Log {
     }
 }
 
-/// Reads the outcomes of a log from byte `from` on.
-fn read_outcomes(mut log: File, from: u64, outcomes: &mut Vec<Logged>) -> io::Result<()> {
-    log.seek(SeekFrom::Start(from))?;
-    let (mut lines, mut line) = (BufReader::new(log), Vec::new());
-    while lines.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut line)? > 0 {
-        outcomes.extend(outcome(&line));
-        line.clear();
-    }
-    Ok(())
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
-
-/// The outcome that a line tells, if it tells one.
-fn outcome(line: &[u8]) -> Option<Logged> {
-    let line: Value = serde_json::from_slice(line).ok()?;
-    let (id, event) = (line["id"].as_str()?, line["event"].as_str()?);
-    OUTCOMES.contains(&event).then(|| Logged { id: id.into(), event: event.into() })
-}
-
-/// The events that end a version of a mesh, or one try at it.
-const OUTCOMES: [&str; 4] = ["mesh.scored", "mesh.failed", "mesh.quarantined", "mesh.ignored"];
 
 /// Room is reserved for so many bytes at a time.
 const RESERVE: u64 = 64 << 10;
 
-/// Lines of ours are shorter by far.
-const LONGEST_LINE: u64 = 1 << 20;
-
-/// What we tore begins like a line of ours, or is a hole; anything else is not ours to cut.
-fn refuse_other_text(file: &mut File, torn: u64) -> io::Result<()> {
-    let mut first = [0];
-    file.seek(SeekFrom::Start(torn))?;
-    file.read_exact(&mut first)?;
-    match first[0] {
-        b'{' | 0 => Ok(()),
-        _ => {
-            Err(io::Error::new(io::ErrorKind::InvalidData, "expected a log of JSON lines, found other text"))
-        }
-    }
-}
-
-/// Number of bytes up to the end of the last whole line.
-fn whole_lines(file: &mut File) -> io::Result<u64> {
-    let mut end = file.metadata()?.len();
-    let mut block = [0; 4096];
-    while end > 0 {
-        let start = end.saturating_sub(block.len() as u64);
-        let block = &mut block[..(end - start) as usize];
-        file.seek(SeekFrom::Start(start))?;
-        file.read_exact(block)?;
-        if let Some(newline) = block.iter().rposition(|&b| b == b'\n') {
-            return Ok(start + newline as u64 + 1);
-        }
-        end = start;
-    }
-    Ok(0)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::io::Read;
+
     use super::*;
     use crate::quantity::Size;
 
