@@ -149,6 +149,11 @@ fn t40_a_long_run_takes_no_more_memory_and_files_than_a_short_one() {
     let (start, mut random) = (Instant::now(), Random(40));
     let (mut samples, mut versions) = (Vec::new(), 0_u64);
     while start.elapsed() < Duration::from_secs(seconds) {
+        // No more than it can keep up with.
+        if waiting(&site).is_some_and(|files| files > 500) {
+            sleep(Duration::from_millis(300));
+            continue;
+        }
         for _ in 0..20 {
             let name = format!("drop/{}/{}.msh", random.below(20), random.below(100));
             match random.below(10) {
@@ -162,7 +167,11 @@ fn t40_a_long_run_takes_no_more_memory_and_files_than_a_short_one() {
         let (private, _) = memory(daemon.process());
         samples.push((private, open_files(daemon.process()), children(daemon.process()).len()));
     }
-    daemon.wait("the last outcome", || waiting(&site) == Some(0));
+    let end = Instant::now();
+    while waiting(&site) != Some(0) {
+        assert!(end.elapsed() < Duration::from_secs(600), "files are left");
+        sleep(Duration::from_millis(300));
+    }
     // The first tenth warms up.
     let tenth = samples.len() / 10 + 1;
     let most = |samples: &[(u64, usize, usize)]| {
