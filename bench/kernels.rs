@@ -1,14 +1,15 @@
 //! Speed of the kernels, batch at each vector width against one element at a time, from coordinates in the first-level
-//! cache. Fails where the machine has AVX2 and a batch is not at least twice as fast: then a kernel no longer
-//! becomes vector code.
+//! cache. `cargo bench` fails where the machine has AVX2 and a batch is not at least twice as fast: then a kernel no longer
+//! becomes vector code. Who only lists or tries the benchmarks (in a debug build, say) is told no ratio.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, Throughput};
-use meshgauge::measures::batch::{Width, geometry_at, quadrilaterals_at, tetrahedra_at, triangles_at};
+use meshgauge::measures::batch::{geometry_at, quadrilaterals_at, tetrahedra_at, triangles_at};
 use meshgauge::measures::{Corner, Geometry, LANES, Lanes, geometry, quadrilateral, tetrahedron, triangle};
 use meshgauge::mesh::Shape;
+use meshgauge::width::Width;
 
 /// Elements measured in one go: enough that a branch predictor does not learn them by heart.
 const BATCHES: usize = 32;
@@ -52,6 +53,9 @@ fn bench(
         group.bench_with_input(id, &width, |bencher, &width| bencher.iter(|| side_by_side(width)));
     }
     group.finish();
+    if !is_measured() {
+        return;
+    }
 
     let alone = nanoseconds(&mut one_by_one);
     print!("{name}, ns an element: {alone:.1} one by one");
@@ -67,6 +71,12 @@ fn bench(
     if let Some(batch) = last {
         assert!(batch * 2.0 <= alone, "{name}: a batch is only {:.2} times as fast", alone / batch);
     }
+}
+
+/// Whether `cargo bench` runs this: it says so, and others do not.
+fn is_measured() -> bool {
+    let given = |flag: &str| std::env::args().any(|argument| argument == flag);
+    given("--bench") && !given("--list") && !given("--test")
 }
 
 /// The best of several short runs, in nanoseconds an element: neighbours on a shared machine only ever slow one down.

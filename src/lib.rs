@@ -37,6 +37,8 @@ pub mod pipeline;
 pub mod report;
 pub mod statistics;
 pub mod summary;
+#[doc(hidden)]
+pub mod width;
 
 pub use error::{Error, Result};
 pub use pipeline::{Options, Progress, score, score_each, score_reader, score_reader_each};

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::error::{Error, Kind, Result};
 use crate::input::Spot;
 use crate::mesh::{Chunk, Class, ElementType, IN_ORDER, NO_REGION, Nodes, Origin, Regions, Shape, Tag};
+use crate::width::{Wide, at_widest};
 
 /// The most elements that a decoder hands over at a time.
 pub const BLOCK: usize = 128;
@@ -209,7 +210,7 @@ impl<'a> ElementSink<'a> {
             self.mark_used(ids);
         }
         self.nodes.mark_all_used(rows.as_flattened());
-        self.ledger.repeated_nodes += rows.iter().map(|rows| u64::from(has_repeats(rows))).sum::<u64>();
+        self.ledger.repeated_nodes += u64::from(at_widest(Repeats(rows)));
         self.count_run(kind, labels.len() as u64);
         let (mut labels, mut rows) = (labels, &*rows);
         while !labels.is_empty() {
@@ -384,6 +385,18 @@ impl Tags<'_> {
         };
         self.key = Some(key);
         Ok(())
+    }
+}
+
+/// How many of at most [`BLOCK`] elements name a row twice.
+struct Repeats<'a, const CORNERS: usize>(&'a [[u32; CORNERS]]);
+
+impl<const CORNERS: usize> Wide for Repeats<'_, CORNERS> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run(self) -> u32 {
+        self.0.iter().fold(0, |count, rows| count + u32::from(has_repeats(rows)))
     }
 }
 

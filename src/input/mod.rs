@@ -3,6 +3,7 @@
 mod budget;
 mod compression;
 mod content;
+mod hashing;
 mod include;
 mod mapped;
 mod name;
@@ -15,21 +16,19 @@ mod unpack;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, OnceLock};
 
 use crate::error::{Bound, Error, Kind, Result};
 use packed::Packed;
-use xxhash_rust::xxh3::xxh3_64;
+use twox_hash::XxHash3_64;
 
 pub use budget::Budget;
 pub use compression::Compression;
 pub use content::looks_like;
 pub use include::{Sibling, Siblings};
-pub use mapped::Window;
 pub use name::mesh_name;
 pub use scratch::{Scratch, ScratchFile, ScratchShare};
-pub use source::{Source, Spot};
+pub use source::{Source, Spot, Window};
 
 /// Limits that guard the machine against hostile or broken files. Each has its own error.
 #[derive(Debug, Clone)]
@@ -140,28 +139,27 @@ impl Input {
         Self::unpack(Packed::new(name, reader, limits.file_bytes), limits, scratch)
     }
 
-    /// The XXH3 (64 bits) of the bytes as they stand on disk, or as they came in. Where it is not known yet the file
-    /// is read for it, once; another thread may do this while the mesh is being scored. Of several files it is the XXH3
-    /// of theirs, big-endian, one after another.
-    pub fn xxh3(&self) -> u64 {
-        self.xxh3_unless(&AtomicBool::new(false)).expect("nobody stops it")
-    }
-
-    /// [`Input::xxh3`], or nothing once `stop` was set and the hash is not known yet.
-    pub fn xxh3_unless(&self, stop: &AtomicBool) -> Option<u64> {
-        match self.xxh3.get() {
-            Some(hash) => Some(*hash),
-            None => {
-                let hash = if self.parts.is_empty() { self.source.xxh3(stop)? } else { self.of_parts(stop)? };
-                Some(*self.xxh3.get_or_init(|| hash))
-            }
+    /// Says that [`Input::xxh3`] will be asked for once the mesh was read: then no byte is brought in for it alone.
+    pub fn begin_hash(&self) {
+        if self.xxh3.get().is_some() {
+            return;
+        }
+        match &*self.parts {
+            [] => self.source.begin_hash(),
+            parts => parts.iter().for_each(Self::begin_hash),
         }
     }
 
-    /// The hash of the hashes of the files.
-    fn of_parts(&self, stop: &AtomicBool) -> Option<u64> {
-        let hashes: Option<Vec<_>> = self.parts.iter().map(|part| part.xxh3_unless(stop)).collect();
-        Some(xxh3_64(&hashes?.iter().flat_map(|hash| hash.to_be_bytes()).collect::<Vec<_>>()))
+    /// The XXH3 (64 bits) of the bytes as they stand on disk, or as they came in. What nobody has looked at yet is read for
+    /// it. Of several files it is the XXH3 of theirs, big-endian, one after another.
+    pub fn xxh3(&self) -> u64 {
+        *self.xxh3.get_or_init(|| match &*self.parts {
+            [] => self.source.xxh3(),
+            parts => {
+                let hashes: Vec<_> = parts.iter().flat_map(|part| part.xxh3().to_be_bytes()).collect();
+                XxHash3_64::oneshot(&hashes)
+            }
+        })
     }
 
     /// [`Input::xxh3`] as 16 hexadecimal digits.

@@ -1,11 +1,12 @@
 //! Bytes as they come in, before unpacking: counted, hashed and held within the limit, in one pass and one buffer.
 
 use std::cell::Cell;
+use std::hash::Hasher;
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 use std::rc::Rc;
 
-use xxhash_rust::xxh3::Xxh3Default;
+use twox_hash::XxHash3_64;
 
 use super::bytes;
 use crate::error::{Bound, Error, Result};
@@ -23,7 +24,7 @@ pub(super) struct Packed<'p, R> {
     read: u64,
     position: Rc<Cell<u64>>,
     ended: bool,
-    hash: Xxh3Default,
+    hash: XxHash3_64,
     /// The cause, where reading itself failed: decoders hand on a copy that has lost it.
     stopped: Option<Error>,
 }
@@ -41,7 +42,7 @@ impl<'p, R: Read> Packed<'p, R> {
             read: 0,
             position: Rc::default(),
             ended: false,
-            hash: Xxh3Default::new(),
+            hash: XxHash3_64::new(),
             stopped: None,
         }
     }
@@ -63,7 +64,7 @@ impl<'p, R: Read> Packed<'p, R> {
 
     /// Number of bytes read, and their hash.
     pub(super) fn seen(&self) -> (u64, u64) {
-        (self.read, self.hash.digest())
+        (self.read, self.hash.finish())
     }
 
     /// Why reading stopped, if it did not stop at the end.
@@ -98,7 +99,7 @@ impl<'p, R: Read> Packed<'p, R> {
             }
         };
         self.ended = count == 0;
-        self.hash.update(&self.buffer[self.to..self.to + count]);
+        self.hash.write(&self.buffer[self.to..self.to + count]);
         self.read += count as u64;
         self.to += count;
         if self.read > self.limit {

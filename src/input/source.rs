@@ -1,12 +1,12 @@
 //! One file as the formats see it: bytes by position, a name, and errors that name the place.
 
 use std::fs::File;
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::ScratchShare;
-use super::mapped::{Mapped, Window};
+use super::hashing::Hashing;
+use super::mapped::{self, Mapped};
 use crate::error::{At, Error, Result, excerpt};
 
 /// Where a decoder stands, as a byte of the file.
@@ -33,8 +33,30 @@ pub enum Spot {
 pub struct Source {
     path: PathBuf,
     mapped: Mapped,
+    hashing: Hashing,
     /// What of the scratch space the bytes take, where they stand there.
     _share: Option<ScratchShare>,
+}
+
+/// Bytes of a file; their pages are given back when it is dropped.
+#[derive(Debug)]
+pub struct Window<'s> {
+    source: &'s Source,
+    bytes: mapped::Window<'s>,
+}
+
+impl Deref for Window<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl Drop for Window<'_> {
+    fn drop(&mut self) {
+        self.source.hashing.take_in(&self.source.mapped, self.bytes.range());
+    }
 }
 
 /// How much is looked at, and given back, at a time where a whole file is gone through.
@@ -44,7 +66,7 @@ impl Source {
     /// Maps `file`, which the user knows as `path`.
     pub fn new(path: &Path, file: &File) -> Result<Self> {
         let mapped = Mapped::new(file).map_err(|e| Error::unreadable(path, e))?;
-        Ok(Self { path: path.to_owned(), mapped, _share: None })
+        Ok(Self { path: path.to_owned(), mapped, hashing: Hashing::default(), _share: None })
     }
 
     /// Maps a scratch file, whose `share` of the space is given back with the source.
@@ -69,7 +91,7 @@ impl Source {
 
     /// A window on `range`, cut to the file's end; its pages are given back when it is dropped.
     pub fn window(&self, range: Range<u64>) -> Window<'_> {
-        self.mapped.window(range)
+        Window { source: self, bytes: self.mapped.window(range) }
     }
 
     /// A few bytes at a place, cut to the file's end.
@@ -92,14 +114,14 @@ impl Source {
         lines
     }
 
-    /// The XXH3 (64 bits) of all bytes; nothing, if `stop` was set meanwhile.
-    pub(super) fn xxh3(&self, stop: &AtomicBool) -> Option<u64> {
-        let mut hash = xxhash_rust::xxh3::Xxh3Default::new();
-        let seen = self.go_through(self.len(), |bytes| {
-            hash.update(bytes);
-            !stop.load(Ordering::Relaxed)
-        });
-        seen.then(|| hash.digest())
+    /// Says that [`Source::xxh3`] will be asked for: what windows were on is hashed as they are given back.
+    pub(super) fn begin_hash(&self) {
+        self.hashing.begin();
+    }
+
+    /// The XXH3 (64 bits) of all bytes.
+    pub(super) fn xxh3(&self) -> u64 {
+        self.hashing.finish(&self.mapped)
     }
 
     /// The byte at which the token `number` of those from byte `from` on starts, or the end.

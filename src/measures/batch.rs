@@ -1,13 +1,13 @@
 //! The measures of 64 elements side by side, compiled for each vector width and chosen at run time.
 //!
 //! Each loop calls the function that scores one element, so batch and scalar cannot differ; nothing is fused or
-//! reordered, so neither do the widths. This is the only unsafe code of the measures: calling a function that was
-//! compiled for instructions which the machine was asked about.
+//! reordered, so neither do the widths.
 
 use super::geometry::{self};
 use super::vector::Vector;
 use super::{quadrilateral, tetrahedron, triangle};
 use crate::mesh::Shape;
+use crate::width::at_every_width;
 
 /// Number of elements in a batch. Unused lanes may hold any numbers; what comes out of them means nothing.
 pub const LANES: usize = 64;
@@ -62,136 +62,6 @@ impl Default for Geometry {
             degenerate: [false; LANES],
         }
     }
-}
-
-/// A vector width that this machine has.
-#[doc(hidden)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Width(Instructions);
-
-// A width exists only where its instructions were detected: `Width::available` alone makes any but the baseline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Instructions {
-    Baseline,
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-    #[cfg(target_arch = "x86_64")]
-    Avx512,
-}
-
-impl Width {
-    /// What every machine of this architecture has.
-    pub const BASELINE: Width = Width(Instructions::Baseline);
-
-    /// The widths of this machine, narrowest first.
-    pub fn available() -> impl Iterator<Item = Width> {
-        let found = [
-            Some(Width::BASELINE),
-            #[cfg(target_arch = "x86_64")]
-            is_x86_feature_detected!("avx2").then_some(Width(Instructions::Avx2)),
-            #[cfg(target_arch = "x86_64")]
-            has_avx512().then_some(Width(Instructions::Avx512)),
-        ];
-        found.into_iter().flatten()
-    }
-
-    /// The widest of this machine. The standard library remembers what it detected.
-    #[inline]
-    pub fn widest() -> Width {
-        #[cfg(target_arch = "x86_64")]
-        if has_avx512() {
-            return Width(Instructions::Avx512);
-        } else if is_x86_feature_detected!("avx2") {
-            return Width(Instructions::Avx2);
-        }
-        Width::BASELINE
-    }
-
-    /// The name of the instructions.
-    pub fn name(self) -> &'static str {
-        match self.0 {
-            Instructions::Baseline => "baseline",
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => "AVX2",
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => "AVX-512",
-        }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-fn has_avx512() -> bool {
-    is_x86_feature_detected!("avx512f")
-        && is_x86_feature_detected!("avx512dq")
-        && is_x86_feature_detected!("avx512bw")
-        && is_x86_feature_detected!("avx512vl")
-}
-
-/// A loop over numbers that becomes vector code: its `run`, and all that it calls, must be `#[inline(always)]`.
-pub trait Wide {
-    /// What it works out.
-    type Output;
-    /// Runs it.
-    fn run(self) -> Self::Output;
-}
-
-/// Runs a loop, compiled for the widest instructions of the machine.
-#[cfg_attr(target_arch = "x86_64", allow(unsafe_code))]
-#[inline]
-pub fn at_widest<W: Wide>(wide: W) -> W::Output {
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn avx2<W: Wide>(wide: W) -> W::Output {
-        wide.run()
-    }
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx512f,avx512dq,avx512bw,avx512vl")]
-    fn avx512<W: Wide>(wide: W) -> W::Output {
-        wide.run()
-    }
-    match Width::widest().0 {
-        Instructions::Baseline => wide.run(),
-        // SAFETY: a `Width` of these instructions exists only where they were detected.
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 => unsafe { avx2(wide) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512 => unsafe { avx512(wide) },
-    }
-}
-
-/// Makes of a loop over lanes a function for the widest instructions of the machine, and one for a given width.
-macro_rules! at_every_width {
-    ($(#[$doc:meta])* $name:ident, $at:ident = $loop:ident($($argument:ident: $type:ty),+)) => {
-        $(#[$doc])*
-        pub fn $name($($argument: $type),+) {
-            $at(Width::widest(), $($argument),+)
-        }
-
-        #[doc(hidden)]
-        #[cfg_attr(target_arch = "x86_64", allow(unsafe_code))]
-        pub fn $at(width: Width, $($argument: $type),+) {
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx2")]
-            fn avx2($($argument: $type),+) {
-                $loop($($argument),+)
-            }
-            #[cfg(target_arch = "x86_64")]
-            #[target_feature(enable = "avx512f,avx512dq,avx512bw,avx512vl")]
-            fn avx512($($argument: $type),+) {
-                $loop($($argument),+)
-            }
-            match width.0 {
-                Instructions::Baseline => $loop($($argument),+),
-                // SAFETY: a `Width` of these instructions exists only where they were detected.
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2 => unsafe { avx2($($argument),+) },
-                // SAFETY: as above.
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx512 => unsafe { avx512($($argument),+) },
-            }
-        }
-    };
 }
 
 at_every_width! {

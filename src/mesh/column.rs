@@ -177,27 +177,6 @@ impl<T> Drop for Column<T> {
     }
 }
 
-/// Asks the processor for points that will be read soon.
-#[inline(always)]
-#[cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "prefetching takes a bare address"))]
-pub fn prefetch(points: &[[f64; 3]], rows: &[u32]) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let start = points.as_ptr();
-        for row in rows {
-            let point = start.wrapping_add(*row as usize).cast::<i8>();
-            // SAFETY: a prefetch reads nothing and faults nowhere, whatever the address. A point may lie in two lines.
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(point);
-                _mm_prefetch::<_MM_HINT_T0>(point.wrapping_add(size_of::<[f64; 3]>() - 1));
-            }
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (points, rows);
-}
-
 /// Rows are read in the order of the elements' corners, all over the column: with pages of 4 KiB each look would cost a
 /// search for its page too.
 #[expect(unsafe_code, reason = "advice about memory takes a bare address")]

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::column::{Column, ColumnBuilder};
 use crate::error::{Error, Result};
 use crate::input::{Budget, Scratch};
+use crate::width::{Wide, at_widest};
 
 /// More runs of consecutive numbers than this, and numbers are kept one by one.
 const MOST_RUNS: usize = 1 << 16;
@@ -249,6 +250,29 @@ fn extend_run(ids: &mut ColumnBuilder<u64>, run: Run) -> Result<()> {
     Ok(())
 }
 
+/// Rows of numbers that follow each other; see [`Nodes::rows_of`].
+struct DenseRows<'a> {
+    first: u64,
+    len: u64,
+    ids: &'a [u64],
+    out: &'a mut [u32],
+}
+
+impl Wide for DenseRows<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        let mut unknown = 0;
+        for (out, id) in self.out.iter_mut().zip(self.ids) {
+            let row = id.wrapping_sub(self.first);
+            unknown |= u64::from(row >= self.len);
+            *out = row as u32;
+        }
+        unknown == 0
+    }
+}
+
 impl Nodes {
     /// Coordinates by row.
     #[inline]
@@ -286,11 +310,9 @@ impl Nodes {
         let mut known = true;
         let each = out.iter_mut().zip(ids);
         match &self.index {
-            Index::Dense { first, len } => each.for_each(|(out, id)| {
-                let row = id.wrapping_sub(*first);
-                known &= row < *len;
-                *out = row as u32;
-            }),
+            Index::Dense { first, len } => {
+                return at_widest(DenseRows { first: *first, len: *len, ids, out });
+            }
             Index::Table { first, rows } => {
                 let rows = rows.rows();
                 each.for_each(|(out, id)| {

@@ -7,7 +7,7 @@
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
 
-use xxhash_rust::xxh3::xxh3_128;
+use twox_hash::XxHash3_128;
 
 use crate::error::{Error, Result};
 use crate::input::{Scratch, ScratchFile};
@@ -67,7 +67,7 @@ pub(super) fn of_elements(chunk: &Chunk) -> Vec<u128> {
         sorted[..corners].copy_from_slice(rows);
         sorted[..corners].sort_unstable();
         sorted[corners] = chunk.shape().index() as u32;
-        xxh3_128(bytemuck::bytes_of(&sorted))
+        XxHash3_128::oneshot(bytemuck::bytes_of(&sorted))
     };
     chunk.rows().chunks_exact(corners).map(of).collect()
 }
@@ -78,7 +78,7 @@ pub(super) fn coincident_nodes(nodes: &Nodes, bytes: u64, scratch: &Scratch) -> 
     nodes.try_each_row(|row| {
         // 0 and -0 are one place.
         let place = nodes.rows()[row].map(|x| (x + 0.0).to_bits());
-        all.add(xxh3_128(bytemuck::bytes_of(&place)))
+        all.add(XxHash3_128::oneshot(bytemuck::bytes_of(&place)))
     })?;
     all.repeated()
 }
@@ -93,7 +93,7 @@ mod tests {
         for bytes in [0, 3 * BYTES_OF_A_PART, u64::MAX] {
             let mut all = Fingerprints::new(bytes, &scratch).expect("scratch");
             for k in 0..10_000u64 {
-                all.add(xxh3_128(&(k % 9_000).to_le_bytes())).expect("scratch");
+                all.add(XxHash3_128::oneshot(&(k % 9_000).to_le_bytes())).expect("scratch");
             }
             all.add(u128::MAX).expect("scratch");
             assert_eq!(all.repeated().expect("scratch"), 1000, "{bytes}");

@@ -6,13 +6,13 @@
 use super::Options;
 use super::each::{Block, ByRegion, Each, Rows};
 use super::worst::Worst;
-use crate::measures::batch::{Wide, at_widest};
 use crate::measures::{
     self, Corner, Family, Geometry, LANES, Lanes, MOST_MEASURES, QuadrilateralFlaws, Subject,
 };
-use crate::mesh::{CHUNK, Chunk, Frame, Origin, Shape, prefetch};
+use crate::mesh::{CHUNK, Chunk, Frame, Origin, Shape, gather, prefetch};
 use crate::statistics::{Distribution, MOST, Moments, Spread, sum};
 use crate::summary::Judgement;
+use crate::width::{Wide, at_widest};
 
 /// The most subjects of a shape: triangular and quadrilateral faces.
 pub(super) const SUBJECTS: usize = 2;
@@ -224,10 +224,12 @@ pub(super) fn measure(
     let block = LANES * shape.corners();
     let blocks = chunk.rows().chunks(block).zip(chunk.labels().chunks(LANES));
     for (number, (rows, labels)) in blocks.enumerate() {
-        // Meshes are numbered less well than one hopes: without this a third of the time goes by waiting for nodes.
+        put_side_by_side(shape, rows, points, &mut work.corners);
+        // Meshes are numbered less well than one hopes: without this a third of the time goes by waiting for nodes. There is
+        // room for a few at a time on their way, so that not all are asked for at once.
         let next = chunk.rows().get((number + 1) * block..).unwrap_or_default();
-        prefetch(points, &next[..next.len().min(block)]);
-        gather(rows, points, shape.corners(), &mut work.corners);
+        let (soon, later) = next[..next.len().min(block)].split_at(next.len().min(block) / 2);
+        prefetch(points, soon);
         let first = position + (number * LANES) as u64;
         let tags = chunk.tags().get(number * LANES..).unwrap_or_default();
         let block = Block { shape, rows, labels, tags: &tags[..tags.len().min(LANES)], first };
@@ -235,6 +237,7 @@ pub(super) fn measure(
             each.start(&block, &work.corners[..shape.corners()]);
         }
         measure_elements(shape, labels, signed, first, work, bins, &mut found);
+        prefetch(points, later);
         if let Some(frame) = &work.frame {
             found.enclosing_axis += frame.apply(&mut work.corners[..shape.corners()], labels.len());
         }
@@ -261,27 +264,15 @@ fn position(origin: Origin) -> u64 {
     (origin.piece << 32) | (u64::from(origin.chunk) << 12)
 }
 
-/// Puts the corners of a block of elements side by side. Lanes without an element keep what they had.
-fn gather(rows: &[u32], points: &[[f64; 3]], corners: usize, out: &mut [Corner; Shape::MAX_CORNERS]) {
-    /// One number of corners after another, so that each has loops of known length.
-    macro_rules! with_corners {
-        ($($count:literal),*) => {
-            match corners {
-                $($count => {
-                    for (lane, rows) in rows.as_chunks::<$count>().0.iter().take(LANES).enumerate() {
-                        for (row, corner) in rows.iter().zip(out.iter_mut()) {
-                            let point = &points[*row as usize];
-                            corner[0][lane] = point[0];
-                            corner[1][lane] = point[1];
-                            corner[2][lane] = point[2];
-                        }
-                    }
-                })*
-                _ => unreachable!("no shape has {corners} corners"),
-            }
-        };
+/// Puts the corners of a block of elements side by side.
+fn put_side_by_side(shape: Shape, rows: &[u32], points: &[[f64; 3]], out: &mut [Corner]) {
+    match shape.corners() {
+        3 => gather::<3, LANES>(rows, points, out),
+        4 => gather::<4, LANES>(rows, points, out),
+        5 => gather::<5, LANES>(rows, points, out),
+        6 => gather::<6, LANES>(rows, points, out),
+        _ => gather::<8, LANES>(rows, points, out),
     }
-    with_corners!(3, 4, 5, 6, 8);
 }
 
 /// Sizes, orientation and degeneracy of whole elements.

@@ -1,7 +1,5 @@
 //! One run, from top to bottom: find the format, outline the file, read the nodes, measure the elements, sum up.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
 use std::time::{Instant, SystemTime};
 
 use super::assemble::{Found, assemble};
@@ -41,22 +39,12 @@ pub(super) fn run_as(
     let progress = options.progress.as_deref().unwrap_or(&quiet);
     let threads = options.threads.max(1);
 
-    // The hash needs every byte in order: it runs ahead beside the rest, which finds the bytes in memory then. Nobody
-    // waits for the hash of a file that is bad.
-    let stop = AtomicBool::new(false);
+    input.begin_hash();
     // Statistics by region cost memory, names hardly any.
     let regions = Regions::new(if options.by_region { options.most_regions } else { MOST_NAMES });
-    let (hash, measured) = thread::scope(|scope| {
-        let hash = scope.spawn(|| input.xxh3_unless(&stop));
-        let measured = measure(input, format, options, writer, &regions, threads, progress);
-        stop.store(measured.is_err(), Ordering::Relaxed);
-        (hash.join(), measured)
-    });
-    let (nodes, merged, bins) = measured.map_err(named)?;
-    let hash = match hash {
-        Ok(hash) => hash.expect("it is stopped for errors alone"),
-        Err(panic) => std::panic::resume_unwind(panic),
-    };
+    let (nodes, merged, bins) =
+        measure(input, format, options, writer, &regions, threads, progress).map_err(named)?;
+    let hash = input.xxh3();
     let found =
         Found { input, format, hash, nodes: &nodes, regions: &regions, merged, bins, threads, started };
     assemble(found, options)

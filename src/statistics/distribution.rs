@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::spread::{Cells, Spread};
+use super::tally::Tally;
 
 /// Number of bins.
 pub const BINS: usize = 100;
@@ -26,13 +27,13 @@ static EDGES: [f64; BINS + 1] = {
 pub struct Distribution {
     cells: Cells,
     /// By cell plus bin.
-    counts: Vec<u64>,
+    counts: Tally,
 }
 
 impl Default for Distribution {
     fn default() -> Self {
         let cells = Cells::of_unit();
-        Self { cells, counts: vec![0; cells.count() + BINS - 1] }
+        Self { cells, counts: Tally::new(cells.count() + BINS - 1) }
     }
 }
 
@@ -41,19 +42,17 @@ impl Distribution {
     #[inline(always)]
     pub fn record(&mut self, scores: &[f64]) {
         let cells = self.cells;
-        cells.count_by(scores, &mut self.counts, |score| cells.of(score) + bin(score));
+        self.counts.count_by(scores, |score| cells.of(score) + bin(score));
     }
 
     /// Adds the counts of another.
     pub fn merge(&mut self, other: &Self) {
-        for (mine, theirs) in self.counts.iter_mut().zip(&other.counts) {
-            *mine += theirs;
-        }
+        self.counts.merge(&other.counts);
     }
 
     /// Counts by bin.
     pub fn bins(&self) -> [u64; BINS] {
-        std::array::from_fn(|bin| self.counts_of_bin(bin).1.iter().sum())
+        std::array::from_fn(|bin| self.counts_of_bin(bin).1.sum())
     }
 
     /// Quantiles by key, as [`Spread::quantiles`] has them.
@@ -67,10 +66,10 @@ impl Distribution {
     }
 
     /// The first cell with values of a bin, and the counts of that bin from this cell on.
-    fn counts_of_bin(&self, bin: usize) -> (usize, &[u64]) {
+    fn counts_of_bin(&self, bin: usize) -> (usize, impl Iterator<Item = u64>) {
         let first = self.cells.of(EDGES[bin]) as usize;
         let last = if bin + 1 < BINS { EDGES[bin + 1].next_down() } else { 1.0 };
-        (first, &self.counts[first + bin..=self.cells.of(last) as usize + bin])
+        (first, self.counts.from(first + bin).take(self.cells.of(last) as usize - first + 1))
     }
 }
 

@@ -6,12 +6,15 @@
 
 mod distance;
 mod distribution;
+mod lanes;
 mod moments;
 mod spread;
+mod tally;
 mod tree;
 
 pub use distance::{Shift, shift};
 pub use distribution::{BINS, Distribution};
-pub use moments::{Extremes, MOST, Moments, sum};
+pub use lanes::sum;
+pub use moments::{Extremes, MOST, Moments};
 pub use spread::{QUANTILES, Spread};
 pub use tree::Tree;

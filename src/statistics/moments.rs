@@ -3,12 +3,12 @@
 //! A block of values is summed in two passes (mean, then deviations from it); blocks are merged by the pairwise update
 //! of Chan, Golub and LeVeque (1979), which is Welford's for blocks of one.
 
+use super::lanes::{extremes, sum, sum_of_products};
+
 /// The most values that are observed together.
 pub const MOST: usize = 5;
 /// Pairs of them.
 const PAIRS: usize = MOST * (MOST - 1) / 2;
-/// Partial sums in a block: fixed, so that every machine adds in the same order.
-const STRIDE: usize = 8;
 
 /// Smallest value with the position that it was met at first, and largest value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,14 +31,7 @@ impl Extremes {
     /// Takes in a block of values that stand at `first`, `first + 1` and so on.
     #[inline(always)]
     pub fn extend(&mut self, values: &[f64], first: u64) {
-        let (blocks, rest) = values.as_chunks::<STRIDE>();
-        let (mut min, mut max) = ([f64::INFINITY; STRIDE], [f64::NEG_INFINITY; STRIDE]);
-        for block in blocks {
-            min = by_lane(min, *block, |a, b| if b < a { b } else { a });
-            max = by_lane(max, *block, |a, b| if b > a { b } else { a });
-        }
-        let min = min.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
-        let max = max.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
+        let (min, max) = extremes(values);
         // Where it stands is looked up only where it counts.
         if min <= self.min {
             let place = values.iter().position(|&v| v == min).unwrap_or(0);
@@ -106,12 +99,17 @@ impl Moments {
             }
             self.extremes[i].extend(column, first);
         }
-        self.merge(&block);
+        self.merge_first(&block, columns.len());
     }
 
     /// Takes in others, whose observations come after these.
-    #[inline(always)]
     pub fn merge(&mut self, other: &Self) {
+        self.merge_first(other, MOST);
+    }
+
+    /// The same where only the first so many values are there.
+    #[inline(always)]
+    fn merge_first(&mut self, other: &Self, values: usize) {
         for (mine, theirs) in self.extremes.iter_mut().zip(&other.extremes) {
             mine.merge(theirs);
         }
@@ -126,7 +124,7 @@ impl Moments {
         let share = m / (n + m);
         let weight = n * share;
         let mut delta = [0.0; MOST];
-        for i in 0..MOST {
+        for i in 0..values {
             delta[i] = other.mean[i] - self.mean[i];
             self.mean[i] += delta[i] * share;
             self.deviations[i] += other.deviations[i] + delta[i] * delta[i] * weight;
@@ -157,51 +155,6 @@ impl Moments {
         let r = self.co_deviations[pair(i.min(j), i.max(j))] / product;
         r.is_finite().then(|| r.clamp(-1.0, 1.0))
     }
-}
-
-/// A sum in a fixed order.
-#[inline(always)]
-pub fn sum(values: &[f64]) -> f64 {
-    let (blocks, rest) = values.as_chunks::<STRIDE>();
-    let mut sums = [0.0; STRIDE];
-    for block in blocks {
-        sums = by_lane(sums, *block, |sum, x| sum + x);
-    }
-    fold(sums) + rest.iter().sum::<f64>()
-}
-
-/// Sum of products of deviations in a fixed order.
-#[inline(always)]
-fn sum_of_products(x: &[f64], mean_x: f64, y: &[f64], mean_y: f64) -> f64 {
-    let ((x_blocks, x_rest), (y_blocks, y_rest)) = (x.as_chunks::<STRIDE>(), y.as_chunks::<STRIDE>());
-    let mut sums = [0.0; STRIDE];
-    for (x, y) in x_blocks.iter().zip(y_blocks) {
-        let products = by_lane(*x, *y, |x, y| (x - mean_x) * (y - mean_y));
-        sums = by_lane(sums, products, |sum, product| sum + product);
-    }
-    let rest = x_rest.iter().zip(y_rest).map(|(x, y)| (x - mean_x) * (y - mean_y));
-    fold(sums) + rest.sum::<f64>()
-}
-
-#[inline(always)]
-fn fold(s: [f64; STRIDE]) -> f64 {
-    ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
-}
-
-/// Combines two rows number by number. Rows that are passed as values stay in registers, one row in one register where it
-/// is wide enough; loops over places of two slices would be turned the other way round.
-#[inline(always)]
-fn by_lane(a: [f64; STRIDE], b: [f64; STRIDE], combine: impl Fn(f64, f64) -> f64) -> [f64; STRIDE] {
-    [
-        combine(a[0], b[0]),
-        combine(a[1], b[1]),
-        combine(a[2], b[2]),
-        combine(a[3], b[3]),
-        combine(a[4], b[4]),
-        combine(a[5], b[5]),
-        combine(a[6], b[6]),
-        combine(a[7], b[7]),
-    ]
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use super::tally::Tally;
+
 /// The probabilities that a summary gives quantiles for, as its keys.
 pub const QUANTILES: [(&str, f64); 5] =
     [("0.001", 0.001), ("0.01", 0.01), ("0.05", 0.05), ("0.5", 0.5), ("0.95", 0.95)];
@@ -55,28 +57,13 @@ impl Cells {
     fn low(&self, cell: usize) -> f64 {
         f64::from_bits((self.base + cell as u64) << SHIFT)
     }
-
-    /// Counts values by whatever `place` says. The places of many are worked out side by side, then counted one by one.
-    #[inline(always)]
-    pub(super) fn count_by(&self, values: &[f64], counts: &mut [u64], place: impl Fn(f64) -> u32) {
-        const STEP: usize = 64;
-        let mut places = [0; STEP];
-        for values in values.chunks(STEP) {
-            for (at, value) in places.iter_mut().zip(values) {
-                *at = place(*value);
-            }
-            for at in &places[..values.len()] {
-                counts[*at as usize] += 1;
-            }
-        }
-    }
 }
 
 /// Counts of values in (0, `top`], by cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
     cells: Cells,
-    counts: Vec<u64>,
+    counts: Tally,
 }
 
 impl Spread {
@@ -94,34 +81,34 @@ impl Spread {
     }
 
     fn new(cells: Cells) -> Self {
-        Self { cells, counts: vec![0; cells.count()] }
+        Self { cells, counts: Tally::new(cells.count()) }
     }
 
     /// Counts values of [0, top].
     #[inline(always)]
     pub fn record(&mut self, values: &[f64]) {
         let cells = self.cells;
-        cells.count_by(values, &mut self.counts, |value| cells.of(value));
+        self.counts.count_by(values, |value| cells.of(value));
     }
 
     /// Adds counts of the cells from `first` on.
-    pub(super) fn add(&mut self, first: usize, counts: &[u64]) {
-        for (mine, theirs) in self.counts[first..].iter_mut().zip(counts) {
-            *mine += theirs;
+    pub(super) fn add(&mut self, first: usize, counts: impl Iterator<Item = u64>) {
+        for (cell, count) in (first..).zip(counts) {
+            self.counts.add(cell, count);
         }
     }
 
     /// Adds the counts of another, made with the same range.
     pub fn merge(&mut self, other: &Self) {
         debug_assert!(self.cells == other.cells);
-        self.add(0, &other.counts);
+        self.counts.merge(&other.counts);
     }
 
     /// Quantiles by key, within [min, max], the true extremes: those of [`QUANTILES`] and of further probabilities.
     pub fn quantiles(&self, further: &[f64], min: f64, max: f64) -> BTreeMap<String, f64> {
         let mut histogram = hdrhistogram::Histogram::<u64>::new_with_bounds(1, 2 * TOP_TICKS, 3)
             .expect("the bounds are in order and three digits are allowed");
-        for (cell, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        for (cell, count) in self.counts.from(0).enumerate().filter(|(_, count)| *count > 0) {
             let ticks =
                 if cell == 0 { 0 } else { (self.cells.low(cell) / self.cells.top * TOP_TICKS as f64) as u64 };
             histogram.record_n(ticks, count).expect("no value exceeds the range");

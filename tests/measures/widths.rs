@@ -1,12 +1,13 @@
 //! Batch and scalar give the same bits, at every vector width that this machine has.
 
 use meshgauge::measures::batch::{
-    Width, geometry_at, quadrilateral_flaws_at, quadrilaterals_at, tetrahedra_at, triangles_at,
+    geometry_at, quadrilateral_flaws_at, quadrilaterals_at, tetrahedra_at, triangles_at,
 };
 use meshgauge::measures::{
     Corner, Geometry, LANES, Lanes, QuadrilateralFlaws, geometry, quadrilateral, tetrahedron, triangle,
 };
 use meshgauge::mesh::Shape;
+use meshgauge::width::Width;
 
 use super::random::Random;
 

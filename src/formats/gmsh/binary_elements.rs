@@ -240,17 +240,20 @@ impl Block {
         let (mut labels, mut ids) = ([0; BLOCK], [[0; NODES]; BLOCK]);
         for (number, block) in records.chunks(BLOCK * width).enumerate() {
             let count = block.len() / width;
-            let mut good = true;
+            // Those over the largest have a bit that it has not.
+            let mut bits = 0;
             for (record, (label, ids)) in block.chunks_exact(width).zip(labels.iter_mut().zip(&mut ids)) {
                 let (head, nodes) = record.split_at(skip);
                 *label = binary.word::<WORD>(head);
-                good &= *label <= binary.most;
+                bits |= *label;
                 for (id, raw) in ids.iter_mut().zip(nodes.as_chunks::<WORD>().0) {
                     *id = binary.word::<WORD>(raw);
-                    good &= *id <= binary.most;
+                    bits |= *id;
                 }
             }
-            if !good || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())? {
+            if bits & !binary.most != 0
+                || !out.block(self.kind, &labels[..count], ids[..count].as_flattened())?
+            {
                 self.decode_any::<WORD>(binary, at + (number * BLOCK * width) as u64, block, out)?;
             }
         }

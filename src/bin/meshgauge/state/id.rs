@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
-use xxhash_rust::xxh3::xxh3_128;
+use twox_hash::XxHash3_128;
 
 use crate::identity::Identity;
 
@@ -18,7 +18,7 @@ impl Id {
         for part in identity.version() {
             bytes.extend_from_slice(&part.to_le_bytes());
         }
-        Self(xxh3_128(&bytes))
+        Self(XxHash3_128::oneshot(&bytes))
     }
 
     /// Half of it, for sets in memory of what stands in the database in full.

@@ -1,12 +1,13 @@
 //! One generator on one problem: it is run with smaller or larger elements until the number of nodes is in the window.
 
 use std::fs;
+use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use meshgauge::Summary;
 use meshgauge::summary::Expectation;
-use xxhash_rust::xxh3::Xxh3;
+use twox_hash::XxHash3_64;
 
 use super::command::{self, Ending, Ran};
 use super::definition::{Generator, Problem, Suite, Versions};
@@ -212,7 +213,7 @@ impl Trial<'_> {
     /// What the row depends on: problem, command, version, and the scripts that the command names.
     fn key(&self, version: &str) -> String {
         let suite = &self.run.suite;
-        let mut hash = Xxh3::new();
+        let mut hash = XxHash3_64::new();
         let words = command::fill(self.template, &suite.variables, &[]);
         let p = self.problem;
         let facts = format!(
@@ -224,15 +225,15 @@ impl Trial<'_> {
             suite.tries,
             suite.timeout
         );
-        hash.update(facts.as_bytes());
+        hash.write(facts.as_bytes());
         for word in &words {
-            hash.update(word.as_bytes());
-            hash.update(&[0]);
+            hash.write(word.as_bytes());
+            hash.write(&[0]);
             if let Some(script) = self.script(word) {
-                hash.update(script.as_bytes());
+                hash.write(script.as_bytes());
             }
         }
-        format!("{:016x}", hash.digest())
+        format!("{:016x}", hash.finish())
     }
 
     /// The text of a script that lies beside the suite.

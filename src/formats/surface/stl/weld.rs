@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use xxhash_rust::xxh3::xxh3_64_with_seed;
+use twox_hash::XxHash3_64;
 
 use crate::error::{Error, Result};
 use crate::formats::binary::{Endian, cut_records};
@@ -90,7 +90,7 @@ impl Welder {
     #[inline]
     fn find(&self, [x, y, z]: [u64; 3]) -> usize {
         let slots = self.slots.rows();
-        let hash = xxh3_64_with_seed(bytemuck::bytes_of(&[x, y, z]), self.seed);
+        let hash = XxHash3_64::oneshot_with_seed(self.seed, bytemuck::bytes_of(&[x, y, z]));
         let mut at = hash as usize & (slots.len() - 1);
         while slots[at][3] > 0 && slots[at][..3] != [x, y, z] {
             at = (at + 1) & (slots.len() - 1);
