@@ -89,3 +89,39 @@ impl Seen {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::path::Path;
+
+    use crate::input::Source;
+
+    #[test]
+    fn windows_in_any_order_give_the_hash_of_the_bytes_in_theirs() {
+        const STEP: u64 = 100_000;
+        let bytes: Vec<u8> = (0..3_000_000u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        let mut file = tempfile::tempfile().expect("a folder for temporary files");
+        file.write_all(&bytes).expect("room");
+        let expected = xxhash_rust::xxh3::xxh3_64(&bytes);
+        let steps = bytes.len() as u64 / STEP;
+        let orders: [Vec<u64>; 5] = [
+            (0..steps).collect(),
+            (0..steps).rev().collect(),
+            (0..steps).map(|k| k * 7 % steps).collect(),
+            // As of two workers; and with what is never looked at, or twice.
+            (0..steps).map(|k| k ^ 1).collect(),
+            vec![3, 4, 4, 0, 29, 3],
+        ];
+        for order in orders {
+            let source = Source::new(Path::new("bytes"), &file).expect("it was written");
+            source.begin_hash();
+            for step in &order {
+                drop(source.window(step * STEP..(step + 1) * STEP));
+                drop(source.window(step * STEP..step * STEP + 9));
+            }
+            assert_eq!(source.xxh3(), expected, "{order:?}");
+            assert_eq!(source.xxh3(), expected, "asked twice");
+        }
+    }
+}

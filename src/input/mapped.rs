@@ -99,18 +99,17 @@ impl Drop for Window<'_> {
     fn drop(&mut self) {
         /// Below this a call costs more than the pages are worth.
         const WORTH: usize = 64 << 10;
-        /// The system maps the neighbours of a page along with it, in blocks of this size: with the first pages of a window
-        /// come the last of the window before, which was given back already.
+        /// The system maps the neighbours of a page along with it, in blocks of this size: with the first and last pages of
+        /// a window come some of the windows beside it, which may have been given back already.
         const AROUND: usize = 64 << 10;
         if self.range.len() >= WORTH
             && let Some(map) = &self.mapped.map
         {
             let start = self.range.start / AROUND * AROUND;
+            let end = self.range.end.next_multiple_of(AROUND).min(map.len());
             // SAFETY: the map is read-only and file-backed: pages that are dropped come back from the file with the
             // same bytes when somebody (another window may overlap) looks again.
-            let _ = unsafe {
-                map.unchecked_advise_range(UncheckedAdvice::DontNeed, start, self.range.end - start)
-            };
+            let _ = unsafe { map.unchecked_advise_range(UncheckedAdvice::DontNeed, start, end - start) };
         }
     }
 }
