@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, TableStyle};
+use comfy_table::{
+    CellAlignment, ColumnConstraint, ContentArrangement, ContentLineStyle, LineStyle, TableStyle,
+};
 
 use super::details::{self, TextTable};
 use super::layout::{self, Row};
@@ -71,7 +73,21 @@ fn detailed(found: &TextTable, style: &Style) -> comfy_table::Table {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
+    let breaks = ["mesh", "region", "centroid", "nodes"];
+    let columns = found.header.iter().enumerate().filter(|(_, name)| breaks.contains(name));
+    fit(&mut table, style, &columns.map(|(i, _)| i).collect::<Vec<_>>());
     table
+}
+
+/// Has a table that is wider than the terminal break its lines in the columns that may; numbers stay whole.
+pub(super) fn fit(table: &mut comfy_table::Table, style: &Style, may_break: &[usize]) {
+    let Some(width) = style.width else { return };
+    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    for (i, column) in table.column_iter_mut().enumerate() {
+        if !may_break.contains(&i) {
+            column.set_constraint(ColumnConstraint::ContentWidth);
+        }
+    }
 }
 
 /// The rows under what the report's limits make worth a look, or good, in colour.

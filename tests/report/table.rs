@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use meshgauge::report::Style;
-use meshgauge::summary::{Expectation, Judgement};
+use meshgauge::compare::{Comparisons, Tolerances, compare};
+use meshgauge::report::{COMPARISONS, Style};
+use meshgauge::summary::{Expectation, Judgement, WorstElement};
 
 use crate::samples::{mesh, mixed, tetrahedra};
 use crate::{plain, render};
@@ -101,6 +102,16 @@ fn tables_keep_to_the_width() {
     long.mesh.name =
         "specimen-with-a-hemispherical-pit-of-500-microns-in-a-bar-of-32-millimetres-fine".to_owned();
     long.elements.by_type = (1..40).map(|i| (format!("C3D{i}"), 1000)).collect();
+    let worst = WorstElement {
+        element: 17_260,
+        value: 0.097,
+        centroid: [-2.1213, 0.099309, -12.666],
+        nodes: vec![2294, 3286, 2738, 3745, 12_294, 13_286, 12_738, 13_745],
+        region: Some("specimen-near-the-pit".to_owned()),
+    };
+    for measure in long.shapes.values_mut().flat_map(|shape| shape.measures.values_mut()) {
+        measure.worst = vec![worst.clone(); 2];
+    }
     for width in [80, 120] {
         let found = render("table", &[long.clone()], Style { color: false, width: Some(width), plot: false });
         // the first line holds the whole name
@@ -108,6 +119,26 @@ fn tables_keep_to_the_width() {
             assert!(line.chars().count() <= width.into(), "{width}: {line}");
         }
         assert!(found.contains("  specimen-") && found.contains("-fine  M11"), "{found}");
+    }
+}
+
+#[test]
+fn a_comparison_keeps_to_the_width() {
+    let mut worse = mixed();
+    for measure in worse.shapes.values_mut().flat_map(|shape| shape.measures.values_mut()) {
+        (measure.min, measure.min_element) = (0.001, 123_456_789);
+    }
+    let pair = compare("pit", &mixed(), &worse, &Tolerances::default());
+    let found = Comparisons::new(vec![pair], vec![], vec![]);
+    for width in [80, 120] {
+        let mut out = Vec::new();
+        let style = Style { color: false, width: Some(width), plot: false };
+        (COMPARISONS[0].render)(&found, &style, &mut out).expect("written");
+        let table = String::from_utf8(out).expect("text");
+        assert!(table.contains("123456789") && table.contains("worse"), "{table}");
+        for line in table.lines() {
+            assert!(line.chars().count() <= width.into(), "{width}: {line}\n{table}");
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! A bar on stderr that follows a run. It draws on a terminal only.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -39,14 +40,50 @@ impl Drop for Bar {
 }
 
 fn draw(name: String, progress: &Progress, stop: &AtomicBool) {
-    let template = "{prefix} {wide_bar} {percent:>3}% of {total_bytes}, {bytes_per_sec}, {msg}, {eta} left";
+    // The bar has what the rest leaves: some of a terminal of 80 columns too.
+    let template = "{prefix:20!} {wide_bar} {percent:>3}% {bytes_per_sec}, {msg}, {eta} left";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new(0).with_style(style).with_prefix(name);
+    let bar = ProgressBar::new(0).with_style(style).with_prefix(file_name(&name));
     while !stop.load(Ordering::Relaxed) {
         bar.set_length(progress.bytes());
         bar.set_position(progress.bytes_done());
-        bar.set_message(format!("{} elements", progress.elements()));
+        bar.set_message(format!("{} elements", short(progress.elements())));
         std::thread::park_timeout(INTERVAL);
     }
     bar.finish_and_clear();
+}
+
+/// The last part of a path; the whole where it has none, as standard input.
+fn file_name(path: &str) -> String {
+    Path::new(path).file_name().map_or_else(|| path.to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+/// A number in a few columns.
+fn short(number: u64) -> String {
+    match number {
+        0..100_000 => number.to_string(),
+        100_000..1_000_000_000 => format!("{:.1}M", number as f64 / 1e6),
+        _ => format!("{:.2}G", number as f64 / 1e9),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_names_take_few_columns() {
+        let rows = [
+            (0, "0"),
+            (99_999, "99999"),
+            (2_437_902, "2.4M"),
+            (999_999_999, "1000.0M"),
+            (1_500_000_000, "1.50G"),
+        ];
+        for (number, text) in rows {
+            assert_eq!(short(number), text);
+        }
+        assert_eq!(file_name("/scratch/meshes/pit.inp"), "pit.inp");
+        assert_eq!(file_name("-"), "-");
+    }
 }

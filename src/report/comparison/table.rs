@@ -8,7 +8,11 @@ use super::words::{COLUMNS, cells, rest, side, tally, told};
 use crate::compare::{Comparison, Comparisons, Outcome};
 use crate::report::Style;
 use crate::report::safe::escaped;
-use crate::report::table::{ansi, bold, ruled, write_lines};
+use crate::report::table::{ansi, bold, fit, ruled, write_lines};
+
+/// The columns whose lines may break in a narrow terminal.
+const OF: usize = 1;
+const STATISTIC: usize = 3;
 
 /// Meshes, the worst first; then those that one side lacks, and a tally.
 pub fn render(comparisons: &Comparisons, style: &Style, out: &mut dyn Write) -> io::Result<()> {
@@ -46,6 +50,7 @@ fn write_mesh(mesh: &Comparison, style: &Style, out: &mut dyn Write) -> io::Resu
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
+    fit(&mut table, style, &[OF, STATISTIC]);
     write_lines(&table, out)?;
     writeln!(out, "  {}\n", rest(mesh))
 }

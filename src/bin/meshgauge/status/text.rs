@@ -68,12 +68,12 @@ fn head(out: &mut String, status: &Status, health: Health, age: Option<f64>) {
         }
         Health::Elsewhere => format!("runs on {}, as far as its file tells", process.host),
     };
-    let _ = writeln!(out, "daemon   {how}");
-    let age = age.map(|age| format!(", {age:.1} s ago")).unwrap_or_default();
+    let written = age.map_or_else(|| format!("as of {}", status.written), |age| format!("{age:.1} s ago"));
+    let _ = writeln!(out, "daemon   {how}; {written}");
     let _ = writeln!(
         out,
-        "process  {} on {}, meshgauge {}, since {}; as of {}{age}",
-        process.pid, process.host, status.meshgauge, status.started, status.written
+        "process  {} on {}, meshgauge {}, since {}",
+        process.pid, process.host, status.meshgauge, status.started
     );
     for reason in &status.degraded {
         let _ = writeln!(out, "degraded {reason}");
