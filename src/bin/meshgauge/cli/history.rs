@@ -101,7 +101,7 @@ fn unknown(state: &State, naming: &Naming, name: &Path) -> anyhow::Result<String
     Ok(format!("nothing that was asked for of a part named {name} was scored{hint}"))
 }
 
-/// A line a shape and measure: sparkline, first, lowest and last minimum, last mean.
+/// A line a shape and measure: first, lowest and last minimum, last mean, a sparkline, and since when it is at its lowest.
 fn table(entries: &[Entry], out: &mut dyn Write) -> io::Result<()> {
     let mut lines: BTreeMap<(&str, &str), Vec<&Entry>> = BTreeMap::new();
     for entry in entries {
@@ -112,19 +112,31 @@ fn table(entries: &[Entry], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{most} scored from {first} to {last}")?;
     writeln!(
         out,
-        "{:<14} {:<8} {:>7} {:>7} {:>7} {:>7}  minimum, 0 to 1",
-        "shape", "measure", "first", "lowest", "last", "mean"
+        "{:<14} {:<8} {:>7} {:>7} {:>7} {:>7}  {:<20}  minimum, 0 to 1",
+        "shape", "measure", "first", "lowest", "last", "mean", "lowest since"
     )?;
     for ((shape, measure), line) in lines {
         let minima: Vec<f64> = line.iter().filter_map(|entry| entry.min).collect();
         let (Some(first), Some(last)) = (minima.first(), minima.last()) else { continue };
         let lowest = minima.iter().copied().fold(f64::INFINITY, f64::min);
+        let since =
+            line.iter().find(|entry| entry.min == Some(lowest)).map(|entry| to_the_second(&entry.scored));
+        let since = since.unwrap_or_default();
         let mean = line.last().and_then(|entry| entry.mean).unwrap_or_default();
         let (shape, measure) = (printable(shape), printable(measure));
         let bars = sparkline(&minima);
-        writeln!(out, "{shape:<14} {measure:<8} {first:>7.3} {lowest:>7.3} {last:>7.3} {mean:>7.3}  {bars}")?;
+        writeln!(
+            out,
+            "{shape:<14} {measure:<8} {first:>7.3} {lowest:>7.3} {last:>7.3} {mean:>7.3}  {since:<20}  {bars}"
+        )?;
     }
     Ok(())
+}
+
+/// A time of RFC 3339 without its fraction of a second.
+fn to_the_second(time: &str) -> String {
+    let seconds = time.split('.').next().unwrap_or(time);
+    if seconds.len() < time.len() { printable(&format!("{seconds}Z")) } else { printable(time) }
 }
 
 /// One bar a value of \[0, 1\], for at most the last 60.
@@ -160,5 +172,11 @@ mod tests {
     fn a_bar_a_value() {
         assert_eq!(sparkline(&[0.0, 0.5, 1.0, 0.124, 0.126]), "▁▅█▁▂");
         assert_eq!(sparkline(&[0.3; 100]).chars().count(), 60);
+    }
+
+    #[test]
+    fn times_are_told_to_the_second() {
+        assert_eq!(to_the_second("2026-11-19T22:04:09.277Z"), "2026-11-19T22:04:09Z");
+        assert_eq!(to_the_second("2026-11-19T22:04:09Z"), "2026-11-19T22:04:09Z");
     }
 }
