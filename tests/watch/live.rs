@@ -1,6 +1,7 @@
 //! `status --watch` on a terminal of its own, which `script` makes.
 
-use std::io::Write;
+use std::io::{Read, Write};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
@@ -85,9 +86,46 @@ fn a_daemon_that_dies_while_it_is_watched_is_told_and_sets_the_status() {
     let daemon = site.start(&["--config", "meshgauge.toml"]);
     daemon.wait_for("mesh.scored", "a.msh");
     daemon.signal(Signal::KILL);
-    daemon.wait("its end", || !std::path::Path::new(&format!("/proc/{}/exe", daemon.process())).exists());
+    daemon.wait("its end", || !Path::new(&format!("/proc/{}/exe", daemon.process())).exists());
     let seen = on_a_terminal(&site, "WATCH; echo \"status $?\"", b"q");
     assert!(seen.contains("dead") && seen.contains("status 1"), "{seen:?}");
+}
+
+#[test]
+fn it_ends_when_its_terminal_goes_without_a_signal() {
+    let site = Site::new();
+    scored(&site);
+    let output = site.command(&["--once", "--config", "meshgauge.toml"]).status().expect("it runs");
+    assert!(output.success());
+    // In a session of its own, whose terminal this is not: nobody sends it a signal when the terminal goes.
+    let program = env!("CARGO_BIN_EXE_meshgauge");
+    let watch = format!("echo $$ > watcher; exec {program} status --watch --config meshgauge.toml");
+    let line = format!("setsid --wait sh -c '{watch}'");
+    let mut script = Command::new("script")
+        .args(["-qec", &line, "/dev/null"])
+        .current_dir(site.path("."))
+        .env("SHELL", "/bin/sh")
+        .env_remove("MESHGAUGE_CONFIG")
+        .env_remove("STATE_DIRECTORY")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("script is part of every Linux");
+    sleep(Duration::from_secs(3));
+    let mut number = [0; 20];
+    let length = std::fs::File::open(site.path("watcher")).and_then(|mut file| file.read(&mut number));
+    let number = String::from_utf8_lossy(&number[..length.expect("it was started")]).trim().to_owned();
+    let watcher = Path::new("/proc").join(number);
+    assert!(watcher.exists(), "it runs");
+    script.kill().expect("killed");
+    script.wait().expect("it ends");
+    for _ in 0..200 {
+        if !watcher.exists() {
+            return;
+        }
+        sleep(Duration::from_millis(100));
+    }
+    panic!("{} still runs without a terminal", watcher.display());
 }
 
 #[test]

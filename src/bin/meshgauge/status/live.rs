@@ -4,22 +4,22 @@ use std::io::{self, IsTerminal, Write, stdin, stdout};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use crossterm::cursor::{Hide, MoveTo, Show};
-use crossterm::event::{self, Event, KeyCode, KeyEvent, KeyModifiers};
 use crossterm::style::{Attribute, Color, Print, ResetColor, SetAttribute, SetForegroundColor};
 use crossterm::terminal::{
     self, Clear, ClearType, DisableLineWrap, EnableLineWrap, EnterAlternateScreen, LeaveAlternateScreen,
 };
 use crossterm::{execute, queue};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
 use signal_hook::consts::{SIGHUP, SIGTERM};
 
 use super::{Health, Status, health, text};
 use crate::exit::Usage;
 
 /// How often it is drawn.
-const BETWEEN_DRAWINGS: Duration = Duration::from_secs(1);
+const BETWEEN_DRAWINGS: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
 
 /// Columns and rows of a terminal that does not say.
 const USUAL: (u16, u16) = (80, 24);
@@ -70,18 +70,31 @@ fn look(state: &Path) -> anyhow::Result<Look> {
     Ok(Look { status, health, age, trouble: None })
 }
 
-/// Waits until it is time to draw again, or the terminal has another size. Whether a key ends it.
+/// Waits until it is time to draw again, or a signal came. Whether a key ends it, or the terminal is gone.
 fn wait_for_end() -> io::Result<bool> {
-    if !event::poll(BETWEEN_DRAWINGS)? {
-        return Ok(false);
-    }
-    Ok(match event::read()? {
-        Event::Key(KeyEvent { code: KeyCode::Char('q' | 'Q') | KeyCode::Esc, .. }) => true,
-        Event::Key(KeyEvent { code: KeyCode::Char('c'), modifiers, .. }) => {
-            modifiers.contains(KeyModifiers::CONTROL)
+    let terminal = stdin();
+    let mut keys = [PollFd::new(&terminal, PollFlags::IN)];
+    match poll(&mut keys, Some(&BETWEEN_DRAWINGS)) {
+        Ok(0) | Err(Errno::INTR) => return Ok(false),
+        Ok(_) if keys[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL) => {
+            return Ok(true);
         }
-        _ => false,
-    })
+        Ok(_) => {}
+        Err(error) => return Err(error.into()),
+    }
+    let mut pressed = [0; 64];
+    match rustix::io::read(&terminal, &mut pressed) {
+        Ok(count) => Ok(ends(&pressed[..count])),
+        Err(Errno::INTR) => Ok(false),
+        Err(_) => Ok(true),
+    }
+}
+
+/// Whether these bytes of a raw terminal say so: `q`, Control-C, Escape alone; none at all is a terminal that is gone.
+fn ends(pressed: &[u8]) -> bool {
+    const CONTROL_C: u8 = 3;
+    const ESCAPE: u8 = 27;
+    matches!(pressed, [] | [ESCAPE]) || pressed.iter().any(|key| matches!(*key, b'q' | b'Q' | CONTROL_C))
 }
 
 impl Screen {
@@ -138,5 +151,21 @@ fn color(look: &Look) -> Color {
         Health::Ended | Health::Elsewhere => Color::Blue,
         Health::Degraded | Health::Stopped => Color::Yellow,
         Health::Hung | Health::Dead => Color::Red,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_that_end_it_and_keys_that_do_not() {
+        for pressed in [&b"q"[..], b"Q", b"\x03", b"\x1b", b"xxq", b""] {
+            assert!(ends(pressed), "{pressed:?}");
+        }
+        // An arrow is an escape with more behind it.
+        for pressed in [&b"\x1b[A"[..], b"x", b"\r"] {
+            assert!(!ends(pressed), "{pressed:?}");
+        }
     }
 }
