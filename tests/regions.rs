@@ -146,7 +146,7 @@ fn one_region_too_many_is_an_error() {
 
 #[test]
 fn a_format_without_regions_says_so() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/drop/cylinder-hex.vtu");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/off/gmsh_pit_block.off");
     let summary = score(&path, &options()).unwrap_or_else(|e| panic!("{e}"));
     let regions = summary.regions.expect("they were asked for");
     assert_eq!((regions.of, regions.list.len()), (None, 0));
@@ -224,4 +224,54 @@ fn the_worst_elements_begin_with_the_minimum_and_have_place_and_nodes() {
     assert_eq!((worst[0].element, &worst[0].nodes[..]), (9, &[1, 3, 2, 5][..]));
     assert_eq!((worst[0].centroid, worst[0].region.as_deref()), ([0.25, 0.25, -0.75], Some("1")));
     assert_eq!((worst.len(), worst[1].element), (2, 7));
+}
+
+/// Name, number of elements and smallest M31 of each region.
+type Found = &'static [(Option<&'static str>, u64, u64)];
+
+/// Elements whose keyword names no set are in that of their section, or in the first list that holds them.
+#[test]
+fn element_sets_of_abaqus_are_those_of_sections_or_else_of_lists() {
+    let deck = lines(|id, [x, y, z]| format!("{id}, {x}, {y}, {z}\n"));
+    let elements = "*ELEMENT, TYPE=C3D4\n7, 1, 2, 3, 4\n9, 1, 3, 2, 5\n";
+    let copies =
+        "*ELSET, ELSET=Old\n9\n*ELCOPY, OLD SET=Old, ELEMENT SHIFT=10, SHIFT NODES=0, NEW SET=Copy\n";
+    let rows: [(&str, String, Found); 5] = [
+        (
+            "lists",
+            format!(
+                "*NODE\n{deck}{elements}*ELSET, ELSET=A\n9\n*ELSET, ELSET=B, GENERATE\n1, 8\n*ELSET, ELSET=C\nA, B\n"
+            ),
+            &[(Some("A"), 1, 9), (Some("B"), 1, 7)],
+        ),
+        (
+            "sections",
+            format!(
+                "*NODE\n{deck}{elements}*ELSET, ELSET=A\n9\n*ELSET, ELSET=B, GENERATE\n7, 9, 2\n*SOLID SECTION, ELSET=B, MATERIAL=M\n"
+            ),
+            &[(Some("B"), 2, 9)],
+        ),
+        (
+            "a part",
+            format!(
+                "*PART, NAME=P\n*NODE\n{deck}{elements}*ELSET, ELSET=A\n9\n*SOLID SECTION, ELSET=A\n*END PART\n*ASSEMBLY, NAME=A\n\
+                 *INSTANCE, NAME=I, PART=P\n*END INSTANCE\n*END ASSEMBLY\n"
+            ),
+            &[(Some("I"), 1, 7), (Some("I.A"), 1, 9)],
+        ),
+        (
+            "copies",
+            format!("*NODE\n{deck}{elements}{copies}"),
+            &[(Some("COPY"), 1, 19), (Some("OLD"), 1, 9), (None, 1, 7)],
+        ),
+        (
+            "rows",
+            format!("*NODE\n{deck}{elements}*ELGEN, ELSET=Row\n7, 2, 0, 50\n"),
+            &[(Some("ROW"), 1, 57), (None, 2, 9)],
+        ),
+    ];
+    for (what, text, expected) in rows {
+        let summary = scored("a.inp", &text);
+        assert_eq!(regions(&summary), expected, "{what}");
+    }
 }

@@ -19,40 +19,6 @@ pub fn facts(format: &str) -> Option<&'static Facts> {
     FACTS.iter().find(|facts| facts.format == format)
 }
 
-/// Collections of files that a whole sweep scored: what they are, files, scored, and why the others were not.
-pub static SWEEPS: &[(&str, u32, u32, &str)] = &[
-    (
-        "CalculiX 2.11 test suite, decks (Debian calculix-ccx-test)",
-        355,
-        350,
-        "3 decks whose bricks list ten nodes, of which the solver drops two; 1 restart without a mesh; 1 that begins with a stray `>`",
-    ),
-    ("its reference results, `.frd`", 52, 52, ""),
-    (
-        "examples of CalculiX GraphiX (Debian calculix-cgx-examples)",
-        28,
-        3,
-        "16 scripts of cgx; 9 decks that include what those scripts make",
-    ),
-    (
-        "meshes of meshio's tests (PyPI meshio 5.3.5, source)",
-        45,
-        34,
-        "6 structured, rectilinear and image data of VTK; 3 Tecplot files; 2 grids of FLAC3D",
-    ),
-    ("examples of PyVista", 8, 6, "2 rectilinear and image data of VTK"),
-    ("examples of mapdl-archive", 4, 4, ""),
-    ("Triangle's examples (PyPI triangle)", 40, 20, "20 `.poly` boundaries, yet to be meshed"),
-    ("Gmsh's tutorials (Debian gmsh-doc), but for geometry", 9, 9, ""),
-    ("polyMesh folders of OpenFOAM 1912's tutorials (Debian openfoam-examples)", 6, 6, ""),
-    (
-        "15 of those tutorials, spread over all, by blockMesh: classes of cells and volumes are those of checkMesh",
-        15,
-        15,
-        "",
-    ),
-];
-
 static FACTS: &[Facts] = &[
     Facts {
         format: "gmsh",
@@ -60,6 +26,7 @@ static FACTS: &[Facts] = &[
             "node numbers that are sparse or out of order, nodes that no element uses",
             "parametric nodes, sections of other programs, binary files without the line's end after the byte order mark",
             "binary version 2 with one element a block",
+            "files of one partition: elements of its neighbours (ghost entities) are left out and counted",
             "elements of up to order 10, by their corners",
         ],
         refused: &[
@@ -74,6 +41,7 @@ static FACTS: &[Facts] = &[
             "parts with any number of instances, moved and turned; nodes and elements inside an instance; decks with parts and no instance",
             "*SYSTEM, and *NODE in cylindrical and spherical coordinates",
             "*NGEN (lines, arcs), *NFILL, *NCOPY (shift, reflect), *ELGEN and *ELCOPY, with the node and element sets that they name",
+            "regions by ELSET= of elements, else by the set of their section, else by the first *ELSET that lists them",
             "*PARAMETER: numbers, arithmetic and functions, put in where their names stand",
             "records over several lines with or without a comma at the end, blanks anywhere, D exponents, comments within data",
             "types by their grammar (C3D8RH, CPE4T, ...), CalculiX's own types, user elements counted by name",
@@ -139,6 +107,7 @@ static FACTS: &[Facts] = &[
     Facts {
         format: "medit",
         quirks: &[
+            "elements of kinds that are not known are counted by their keyword",
             "keywords in any order and of any kind; a file without End, if no table is cut",
             "second order under the names of the first, as Gmsh writes it",
         ],
@@ -293,8 +262,9 @@ static FACTS: &[Facts] = &[
         format: "xdmf",
         quirks: &[
             "numbers in the file, in HDF5 or in binary files beside it; mixed topologies; the first of several time steps",
+            "structured, rectilinear and uniform grids; time steps that fetch their mesh by XInclude",
         ],
-        refused: &["functions, references and parts of datasets"],
+        refused: &["functions, references, hyperslabs and parts of datasets"],
         proof: &["meshio"],
     },
 ];

@@ -41,6 +41,7 @@ mod simplex;
 mod sink;
 mod su2;
 mod surface;
+mod sweeps;
 #[cfg(test)]
 mod testing;
 pub mod text;
@@ -59,10 +60,11 @@ use crate::input::{Input, Limits, Scratch, Source};
 use crate::mesh::{ElementType, Shape};
 
 pub use batch::NodeBatch;
-pub use facts::{Facts, SWEEPS, facts};
+pub use facts::{Facts, facts};
 pub use foreign::foreign;
 pub use plan::Plan;
 pub use sink::{BLOCK, Chunks, ElementSink, Ledger, TypeCount};
+pub use sweeps::SWEEPS;
 
 /// The number of bytes that a piece aims at. It does not depend on threads or budget: chunks, and so the last bits of
 /// every mean, follow from it.

@@ -90,6 +90,8 @@ pub struct ElementSink<'a> {
     run: u64,
     /// What elements are tagged with, where somebody asked for it.
     tags: Option<Tags<'a>>,
+    /// Whether the elements that come are left out.
+    passes_over: bool,
 }
 
 /// The tag of the element that comes next, and the regions of this piece.
@@ -117,6 +119,7 @@ impl<'a> ElementSink<'a> {
             current: 0,
             run: 0,
             tags: None,
+            passes_over: false,
         }
     }
 
@@ -154,6 +157,11 @@ impl<'a> ElementSink<'a> {
     /// Adds an element. `label` is its own number, `ids` are its nodes as they stand in the record.
     #[inline]
     pub fn element(&mut self, label: u64, kind: &Arc<ElementType>, ids: &[u64]) -> Result<()> {
+        if self.passes_over {
+            self.ledger.ghost_elements += 1;
+            self.mark_used(ids);
+            return Ok(());
+        }
         self.count_run(kind, 1);
         match &kind.class {
             Class::Measured { shape, corners, .. } => self.measured(label, *shape, corners, ids),
@@ -171,6 +179,11 @@ impl<'a> ElementSink<'a> {
     #[must_use = "elements that were not taken must be added one by one"]
     pub fn block(&mut self, kind: &Arc<ElementType>, labels: &[u64], ids: &[u64]) -> Result<bool> {
         debug_assert!(labels.len() <= BLOCK && ids.len() == labels.len() * kind.nodes);
+        if self.passes_over {
+            self.ledger.ghost_elements += labels.len() as u64;
+            self.mark_used(ids);
+            return Ok(true);
+        }
         let Class::Measured { shape, corners, .. } = &kind.class else { return Ok(false) };
         macro_rules! with_corners {
             ($($count:literal),*) => {
@@ -255,10 +268,11 @@ impl<'a> ElementSink<'a> {
         ids.iter().filter_map(|id| self.nodes.row(*id)).for_each(|row| self.nodes.mark_used(row));
     }
 
-    /// Leaves out an element that is another part's, which has it too, or that the file hides.
+    /// Says whether the elements that follow are ghosts: another partition's, which has them too, or such that the file
+    /// hides. They are left out and counted.
     #[inline]
-    pub fn ghost(&mut self) {
-        self.ledger.ghost_elements += 1;
+    pub fn ghosts(&mut self, are_ghosts: bool) {
+        self.passes_over = are_ghosts;
     }
 
     /// Counts elements of a type that is not measured, where their nodes are not known.

@@ -58,6 +58,8 @@ const OWN: &[(&str, &str, u64, Shapes, u64)] = &[
     ("tetgen", "box_o2.1.ele", 219, &[(Tetrahedron, 90)], 0),
     ("nag", "pit2d.r", 220, PIT, 0),
     ("gmsh", "mixed_hex_prism_41.msh", 54, MIXED, 0),
+    ("gmsh", "partition_1_of_2.msh", 77, &[(Triangle, 79), (Tetrahedron, 92)], 22),
+    ("gmsh", "partition_2_of_2_bin.msh", 75, &[(Triangle, 77), (Tetrahedron, 92)], 22),
     ("gmsh", "pit2d_22_ascii.msh", 220, PIT, 56),
     ("gmsh", "pit2d_22_bin.msh", 220, PIT, 56),
     ("gmsh", "pit2d_40_ascii.msh", 220, PIT, 56),

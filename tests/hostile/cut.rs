@@ -20,6 +20,7 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
         |_, lost| starts_with_any(lost, &["CELL_DATA", "POINT_DATA"]),
         "the data of a mesh come after it",
     ),
+    ("gmsh", before_ghosts, "which elements are another partition's is said twice"),
     ("vtk", no_data_yet, "point data of no arrays are allowed, and some writers make them"),
     ("vtk", within_last_number, "the last number is still one without its last digits"),
     ("abaqus", after_the_mesh, "sets come after the mesh"),
@@ -59,6 +60,11 @@ fn contains(bytes: &[u8], word: &[u8]) -> bool {
 fn no_data_yet(kept: &[u8], _: &[u8]) -> bool {
     let last = kept.trim_ascii_end().rsplit(|b| *b == b'\n').next().unwrap_or_default();
     last.starts_with(b"POINT_DATA ") || last.starts_with(b"CELL_DATA ")
+}
+
+/// The elements are whole, with those of other partitions in blocks of their own.
+fn before_ghosts(kept: &[u8], lost: &[u8]) -> bool {
+    contains(kept, b"$EndElements") && starts_with_any(lost, &["$GhostElements"])
 }
 
 fn after_the_mesh(kept: &[u8], lost: &[u8]) -> bool {

@@ -19,7 +19,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DEBIAN = ["calculix-ccx-test", "calculix-cgx-examples", "gmsh-doc", "openfoam-examples", "freefem-examples", "tetgen"]
 PYPI = ["meshio", "pyvista", "mapdl-archive", "triangle", "pyNastran"]
-SOURCES = {"meshio": "https://files.pythonhosted.org/packages/source/m/meshio/meshio-5.3.5.tar.gz"}
+# Packages whose meshes stand in the source alone.
+SOURCES = {"meshio": "meshio==5.3.5"}
 # Formats of meshes, those that are not read among them: they must be refused by name.
 EXTENSIONS = """3dm ansys bdf cas case cdb cgns dat dyn e ele exo f3grid fbd fem foam frd g gen h5 hdf inp k key mat med mesh
 meshb mphbin mphtxt msh nas neu obj off p3d pch plt ply poly stl su2 tec unv ugrid vol vtk vtkhdf vtm vtp vtr vts vtu pvtu
@@ -42,7 +43,8 @@ def fetch(folder):
         if not into.exists():
             into.mkdir()
             what = SOURCES.get(package, package)
-            subprocess.run([sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", into, what], check=True)
+            kind = ["--no-binary", ":all:"] if package in SOURCES else []
+            subprocess.run([sys.executable, "-m", "pip", "download", "-q", "--no-deps", *kind, "-d", into, what], check=True)
             for archive in list(into.iterdir()):
                 unpack = ["tar", "-xf"] if archive.name.endswith(".tar.gz") else [sys.executable, "-m", "zipfile", "-e"]
                 where = ["-C", into] if archive.name.endswith(".tar.gz") else [into]

@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::elements::ElementLines;
-use super::make::{MadeElements, MadeNodes, Maker};
+use super::make::{Belonging, Listed, MadeElements, MadeNodes, Maker, SetsOfPart};
 use super::nodes::NodeLines;
 use super::placement::{Affine, Placement};
 use super::types::Kind;
@@ -47,6 +47,9 @@ pub(super) struct Block<T> {
 pub(super) struct Blocks {
     pub(super) nodes: Vec<NodeBlock>,
     pub(super) elements: Vec<ElementBlock>,
+    /// What is said of element sets, and what it says once the deck was read to its end.
+    pub(super) listed: Listed,
+    pub(super) sets: Arc<SetsOfPart>,
     /// What keywords that make others draw on.
     pub(super) maker: Maker,
     /// Why a keyword that makes others could not: an error once the blocks are used.
@@ -62,8 +65,8 @@ pub(super) enum NodeBlock {
 /// Elements, as they stand in the deck or were made.
 pub(super) enum ElementBlock {
     /// With the set that they all are in, `ELSET=`.
-    Lines(Arc<Block<Kind>>, Option<String>),
-    Made(MadeElements),
+    Lines(Arc<Block<Kind>>, Option<Arc<str>>),
+    Made(MadeElements, Option<Arc<str>>),
 }
 
 /// A `*PART`.
@@ -110,18 +113,24 @@ impl Blocks {
                 out.nodes(Piece { layout: Arc::clone(&layout), span: span.clone() })?;
             }
         }
+        let owner: Option<Arc<str>> = owner.map(Arc::from);
+        let belonging = |set: &Option<Arc<str>>| Belonging {
+            owner: owner.clone(),
+            set: set.clone(),
+            sets: Arc::clone(&self.sets),
+        };
         for block in &self.elements {
             let (block, set) = match block {
                 ElementBlock::Lines(block, set) => (block, set),
-                ElementBlock::Made(made) => {
-                    made.yield_to(out, scope)?;
+                ElementBlock::Made(made, set) => {
+                    made.yield_to(out, scope, belonging(set))?;
                     continue;
                 }
             };
             let layout: Arc<dyn ElementLayout> = Arc::new(ElementLines {
                 source: Arc::clone(&block.source),
                 kind: block.what.clone(),
-                region: region(owner, set.as_deref()),
+                belonging: belonging(set),
                 scope,
                 instances: instances.cloned(),
             });
@@ -130,14 +139,6 @@ impl Blocks {
             }
         }
         Ok(())
-    }
-}
-
-/// The region of elements of a set and of an owner: `STEEL`, `PART-1-1`, `PART-1-1.STEEL`.
-fn region(owner: Option<&str>, set: Option<&str>) -> Option<String> {
-    match (owner, set) {
-        (Some(owner), Some(set)) => Some(format!("{owner}.{set}")),
-        (owner, set) => owner.or(set).map(str::to_owned),
     }
 }
 

@@ -165,6 +165,11 @@ impl<'a> Deck<'a> {
             }
             "INSTANCE" => self.instance(keyword, place)?,
             "ENDINSTANCE" => self.leave(Level::Instance, "*INSTANCE before *END INSTANCE")?,
+            name if name.ends_with("SECTION") => {
+                if let Ok(Some(set)) = keyword.label("ELSET") {
+                    self.blocks().listed.section(set);
+                }
+            }
             name if UNEXPANDED.contains(&name) => {
                 let error = Error::unsupported(format!("the keyword *{name} is not expanded"));
                 self.fail(place.of(error))?;
@@ -207,8 +212,10 @@ impl<'a> Deck<'a> {
         match &mut self.open {
             Open::Other | Open::Make(..) => Ok(()),
             Open::Set(head) => {
-                let noted = Noted::Set(head.clone(), Arc::clone(source), line..range.end);
-                self.blocks().maker.note(noted);
+                let (head, source) = (head.clone(), Arc::clone(source));
+                let blocks = self.blocks();
+                blocks.listed.list(head.clone(), Arc::clone(&source), line..range.end);
+                blocks.maker.note(Noted::Set(head, source, line..range.end));
                 Ok(())
             }
             Open::Nothing => Err(source.malformed_text(first, "a keyword line, as *HEADING or *NODE")),
@@ -232,7 +239,7 @@ impl<'a> Deck<'a> {
                 let spans = cut_at_records(self.input, source, &what, line..range.end)?;
                 let block = Arc::new(Block { source: Arc::clone(source), spans, what });
                 let blocks = self.blocks();
-                let name = set.as_deref().map(plain);
+                let name = set.as_deref().map(|set| plain(set).into());
                 blocks.maker.note(Noted::Elements(Arc::clone(&block), set));
                 blocks.elements.push(ElementBlock::Lines(block, name));
                 self.flush()
@@ -285,7 +292,9 @@ impl<'a> Deck<'a> {
         match blocks.maker.run(command, input, data, rows) {
             Ok(made) => {
                 blocks.nodes.extend(made.nodes.map(NodeBlock::Made));
-                blocks.elements.extend(made.elements.into_iter().map(ElementBlock::Made));
+                let set = made.set;
+                let elements = made.elements.into_iter();
+                blocks.elements.extend(elements.map(|made| ElementBlock::Made(made, set.clone())));
                 self.flush()
             }
             Err(error) => self.fail(error),
@@ -411,6 +420,12 @@ impl<'a> Deck<'a> {
         };
         if let Some((place, end)) = begun {
             return Err(place.of(Error::malformed(format!("{end} after this line"), "the end of the file")));
+        }
+        let budget = &self.input.memory;
+        let instances = self.instances.iter_mut().map(|instance| &mut instance.own);
+        let parts = self.parts.iter_mut().map(|part| &mut part.blocks).chain(instances);
+        for blocks in parts.chain([&mut self.outside]) {
+            blocks.sets.fill(std::mem::take(&mut blocks.listed), budget);
         }
         let nothing = Blocks::default();
         let mut copies = Vec::new();

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::fields::{Fields, LARGEST_NUMBER};
 use super::keywords::label;
+use super::make::Belonging;
 use super::types::Kind;
 use crate::error::{Error, Kind as Fault, Result};
 use crate::formats::plain::{Columns, PlainRows};
@@ -24,8 +25,8 @@ pub(super) const MOST_NODES: usize = 1 << 16;
 pub(super) struct ElementLines {
     pub(super) source: Arc<Source>,
     pub(super) kind: Kind,
-    /// The element set or the instance that the elements are in.
-    pub(super) region: Option<String>,
+    /// The element set and the instance that the elements are in.
+    pub(super) belonging: Belonging,
     /// The instance, in the bits above the nodes' own numbers.
     pub(super) scope: u64,
     /// Scopes by instance name, for elements of the assembly: `Part-1-1.12`.
@@ -38,9 +39,6 @@ impl ElementLayout for ElementLines {
     }
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
-        if let Some(region) = &self.region {
-            out.region(0, || region.clone())?;
-        }
         let window = self.source.window(span.clone());
         let mut fields = Fields::new(&window);
         let done = self.records(&mut fields, span.start, out);
@@ -80,10 +78,11 @@ impl ElementLines {
 
     /// An error leaves `fields` on the line that it is about.
     fn records(&self, fields: &mut Fields<'_>, base: u64, out: &mut ElementSink<'_>) -> Result<()> {
+        let sets = self.belonging.begin(out)?;
         let mut ids = Vec::with_capacity(self.kind.of.nodes.min(MOST_NODES));
         let Kind { of, least } = &self.kind;
         let columns = Columns { kind: of, first: None, before: (&[], 0), after: 0, scope: self.scope };
-        let mut plain = (*least == of.nodes && self.instances.is_none())
+        let mut plain = (*least == of.nodes && self.instances.is_none() && sets.is_none())
             .then(|| PlainRows::new(b',', &columns))
             .flatten();
         while fields.next_line()? {
@@ -98,6 +97,9 @@ impl ElementLines {
             out.at = Spot::Text(base + start as u64);
             let element = fields.number("an element number")?;
             self.nodes(element, fields, &mut ids, start)?;
+            if let Some(sets) = &sets {
+                self.belonging.enter(sets, element, out)?;
+            }
             out.element(element, &self.kind.of, &ids).map_err(|e| {
                 fields.at = start;
                 plain_number(e)

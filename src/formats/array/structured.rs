@@ -94,10 +94,7 @@ impl ElementLayout for Block {
         }
         let mut ids = Vec::with_capacity(8);
         for (k, cell) in span.enumerate() {
-            if marks.get(k).is_some_and(|mark| mark & hidden != 0) {
-                out.ghost();
-                continue;
-            }
+            out.ghosts(marks.get(k).is_some_and(|mark| mark & hidden != 0));
             if let Some(region) = regions.get(k) {
                 self.of.regions.enter(*region, out)?;
             }

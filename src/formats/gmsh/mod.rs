@@ -80,9 +80,9 @@ impl Format for Gmsh {
                     groups.read_names(&mut walk, &end)?;
                     continue;
                 }
-                "Entities" if header.is_some_and(Header::has_entities) => {
+                "Entities" | "PartitionedEntities" if header.is_some_and(Header::has_entities) => {
                     let Header { version, binary } = self::known(header, &walk)?;
-                    groups.read_entities(&mut walk, version, binary, &end)?;
+                    groups.read_entities(&mut walk, (version, binary), name != "Entities", &end)?;
                     continue;
                 }
                 _ => {

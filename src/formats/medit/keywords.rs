@@ -1,10 +1,11 @@
 //! The keywords whose tables hold elements: `libmeshb7.h`. Corners stand first in every record, in the order that we
 //! use.
 
+use std::borrow::Cow;
 use std::sync::{Arc, LazyLock};
 
-use crate::mesh::ElementType;
 use crate::mesh::Shape::{self, Hexahedron, Pyramid, Quadrilateral, Tetrahedron, Triangle, Wedge};
+use crate::mesh::{Class, ElementType};
 
 /// A keyword with a table of elements.
 pub(super) struct Keyword {
@@ -43,6 +44,19 @@ pub(super) fn by_name(name: &[u8]) -> Option<&'static Keyword> {
     let alias = ALIASES.iter().find(|alias| alias.0.as_bytes().eq_ignore_ascii_case(name));
     let name = alias.map_or(name, |alias| alias.1.as_bytes());
     KEYWORDS.iter().find(|keyword| keyword.name.as_bytes().eq_ignore_ascii_case(name))
+}
+
+/// Whether a keyword that is not known, in small letters, names elements, by how it begins.
+pub(super) fn is_of_elements(name: &[u8]) -> bool {
+    const BEGINNINGS: [&str; 7] =
+        ["triangles", "quadrilaterals", "tetrahedra", "pyramids", "prisms", "pentahedra", "hexahedra"];
+    BEGINNINGS.iter().any(|beginning| name.starts_with(beginning.as_bytes())) && !name.ends_with(b"ordering")
+}
+
+/// The type of elements of such a keyword: counted under its name.
+pub(super) fn unknown(name: String) -> ElementType {
+    let name: Cow<'static, str> = name.into();
+    ElementType { name: name.clone(), nodes: 0, class: Class::Counted(name) }
 }
 
 /// The keyword of a binary file.

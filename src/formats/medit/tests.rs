@@ -289,3 +289,18 @@ fn counts_and_places_of_binary_files_are_not_believed() {
     assert!(with(32, u32::MAX).contains("byte 32: expected the number of a node, found -1"));
     assert_eq!(with(16, 5), "byte 8: expected a dimension, 2 or 3, found 5");
 }
+
+#[test]
+fn elements_of_a_kind_that_is_not_known_are_counted_by_its_name() {
+    let text = |rows: &str| {
+        format!(
+            "MeshVersionFormatted 2\nDimension 3\nVertices 3\n0 0 0 1\n1 0 0 1\n0 1 0 1\nTriangles 1\n1 2 3 1\n\
+             PrismsP9 2\n{rows}TrianglesP2Ordering 1\n1 2\nEnd\n"
+        )
+    };
+    let mesh = testing::read_bytes(&Medit, "a.mesh", text("1 2 3 1\n3 2 1 1\n").as_bytes()).expect("sound");
+    assert_eq!((mesh.count(Triangle), counted(&mesh, "prismsp9")), (1, 2));
+    let error =
+        testing::read_bytes(&Medit, "a.mesh", text("1 2 3\n3 2\n").as_bytes()).expect_err("cut").to_string();
+    assert!(error.contains("2 whole rows of prismsp9"), "{error}");
+}

@@ -74,6 +74,7 @@ fn keyword(
             let first = found.add_vertices(rows);
             outline_nodes(reader, Table { what: "rows of Vertices", rows, extra: 1, first }, dimension, out)
         }
+        _ if keywords::is_of_elements(name) => count_unknown(reader, name, found, out),
         _ => skip(reader, name, found),
     }
 }
@@ -90,6 +91,25 @@ fn count(reader: &mut TokenReader<'_>, polytopes: &Polytopes, out: &mut dyn Outl
         return Err(reader.source.malformed_text(reader.position(), expected));
     }
     out.count(&polytopes.kind(), rows)
+}
+
+/// Passes the elements of a kind that is not known and counts them under its name.
+fn count_unknown(
+    reader: &mut TokenReader<'_>,
+    name: &[u8],
+    found: &mut Found,
+    out: &mut dyn Outline,
+) -> Result<()> {
+    let name = String::from_utf8_lossy(name).into_owned();
+    let rows = reader.integer(&format!("the number of {name}"))?;
+    let numbers = reader.pass_to_word()?;
+    if rows > numbers || rows > 0 && !numbers.is_multiple_of(rows) {
+        reader.more();
+        let expected = format!("{rows} whole rows of {name}, and not {numbers} numbers in all");
+        return Err(reader.source.malformed_text(reader.position(), expected));
+    }
+    found.label = found.label.saturating_add(rows);
+    out.count(&keywords::unknown(name), rows)
 }
 
 /// Passes a keyword that is not read, with its numbers.

@@ -160,10 +160,7 @@ impl ElementLayout for Cells {
                 };
                 let kind = kind.find(codes[k], list.end - list.start, label)?;
                 at = list.end;
-                if marks.get(k).is_some_and(|mark| mark & hidden != 0) {
-                    out.ghost();
-                    continue;
-                }
+                out.ghosts(marks.get(k).is_some_and(|mark| mark & hidden != 0));
                 if let Some(region) = regions.get(k) {
                     self.regions.enter(*region, out)?;
                 }

@@ -35,8 +35,9 @@ pub(super) struct Topology {
     pub(super) at: u64,
     /// In small letters.
     pub(super) kind: String,
-    /// Number of elements, and of nodes of each.
+    /// Number of elements, of one or of several dimensions, and of nodes of each.
     pub(super) count: Option<u64>,
+    pub(super) dimensions: Vec<u64>,
     pub(super) nodes: Option<u64>,
     /// The number of the first node.
     pub(super) base: u64,
@@ -74,6 +75,8 @@ struct Open {
     /// Whether it is one of the later grids of a collection over time, or in one.
     passed_over: bool,
     is_uniform: bool,
+    /// Whether its mesh is that of a grid before it.
+    repeats: bool,
     grid: Grid,
 }
 
@@ -124,7 +127,11 @@ impl Reader<'_> {
             ("Geometry", false) => self.geometry(tag)?,
             ("Topology", false) => self.topology(tag)?,
             ("DataItem", false) => self.item(tag)?,
-            ("xi:include" | "include", false) => return Err(self.refused(tag, "an XInclude")),
+            ("xi:include" | "include", false) => match self.open.last_mut() {
+                // Of a series over time each step fetches the mesh that stands before.
+                Some(open) if !self.grids.is_empty() => open.repeats = true,
+                _ => return Err(self.refused(tag, "an XInclude")),
+            },
             _ => {}
         }
         Ok(())
@@ -149,13 +156,18 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    fn count(&self, tag: &Tag, names: &[&str]) -> Result<Option<u64>> {
+    /// The numbers of an attribute.
+    fn counts(&self, tag: &Tag, names: &[&str]) -> Result<Option<Vec<u64>>> {
         let Some(value) = self.word(tag, names)? else { return Ok(None) };
-        let count = value
-            .split_ascii_whitespace()
-            .try_fold(1u64, |all, word| text::integer(word.as_bytes()).map(|n| all.saturating_mul(n)));
+        let counts: Option<Vec<_>> =
+            value.split_ascii_whitespace().map(|word| text::integer(word.as_bytes())).collect();
         let expected = || self.source.malformed_text(tag.at, format!("the attribute {}, a number", names[0]));
-        count.map(Some).ok_or_else(expected)
+        counts.map(Some).ok_or_else(expected)
+    }
+
+    /// Their product.
+    fn count(&self, tag: &Tag, names: &[&str]) -> Result<Option<u64>> {
+        Ok(self.counts(tag, names)?.map(|counts| counts.into_iter().fold(1, u64::saturating_mul)))
     }
 
     fn open_grid(&mut self, tag: &Tag) -> Result<()> {
@@ -177,7 +189,8 @@ impl Reader<'_> {
         }
         if !tag.is_empty {
             let grid = Grid { at: tag.at, ..Grid::default() };
-            self.open.push(Open { at: tag.at, is_temporal, inner: 0, passed_over, is_uniform, grid });
+            let (at, inner, repeats) = (tag.at, 0, false);
+            self.open.push(Open { at, is_temporal, inner, passed_over, is_uniform, repeats, grid });
         }
         Ok(())
     }
@@ -194,7 +207,7 @@ impl Reader<'_> {
             return Err(self.source.place(Error::limit("number of grids", MOST_GRIDS), Spot::Text(open.at)));
         }
         // A grid of grids may leave out its type.
-        if open.inner == 0 {
+        if open.inner == 0 && !open.repeats {
             self.grids.push(open.grid);
         }
         Ok(())
@@ -220,12 +233,15 @@ impl Reader<'_> {
     fn topology(&mut self, tag: &Tag) -> Result<()> {
         self.no_reference(tag)?;
         let kind = self.word(tag, &["TopologyType", "Type"])?.unwrap_or_default();
-        let count = self.count(tag, &["NumberOfElements", "Dimensions"])?;
+        let dimensions = self.counts(tag, &["NumberOfElements", "Dimensions"])?;
+        let count = dimensions.as_ref().map(|counts| counts.iter().copied().fold(1, u64::saturating_mul));
+        let dimensions = dimensions.unwrap_or_default();
         let nodes = self.count(tag, &["NodesPerElement"])?;
         let base = self.count(tag, &["BaseOffset"])?.unwrap_or(0).min(1 << 32);
         self.section = (!tag.is_empty).then_some(Section::Topology);
         if let Some(open) = self.open.last_mut() {
-            open.grid.topology = Some(Topology { at: tag.at, kind, count, nodes, base, items: Vec::new() });
+            let (at, items) = (tag.at, Vec::new());
+            open.grid.topology = Some(Topology { at, kind, count, dimensions, nodes, base, items });
         }
         Ok(())
     }

@@ -6,6 +6,7 @@
 
 mod heavy;
 mod light;
+mod structured;
 #[cfg(test)]
 mod tests;
 mod types;
@@ -24,6 +25,7 @@ use crate::input::{Input, Spot};
 use crate::mesh::{ElementType, Shape};
 use heavy::{Files, Found};
 use light::{Geometry, Grid, Topology};
+use structured::Lattice;
 
 /// Most nodes of one element.
 const MOST_NODES: u64 = 4096;
@@ -37,7 +39,7 @@ impl Format for Xdmf {
     }
 
     fn title(&self) -> &'static str {
-        "XDMF 2 and 3: unstructured grids; numbers in the file, in HDF5 or in binary files beside it"
+        "XDMF 2 and 3: unstructured and structured grids; numbers in the file, in HDF5 or in binary files beside it"
     }
 
     fn extensions(&self) -> &'static [&'static str] {
@@ -62,13 +64,46 @@ impl Format for Xdmf {
         let mut files = Files::new(input);
         let mut ready = Vec::new();
         for grid in &grids {
-            ready.push(Ready::find(input, grid, &mut files)?);
+            ready.push(find(input, grid, &mut files)?);
         }
         let stores = files.finish()?;
         let several = ready.len() > 1;
         let mut first = First { node: 0, element: 1 };
-        ready.into_iter().try_for_each(|grid| grid.outline(&stores, several, &mut first, out))
+        for grid in ready {
+            match grid {
+                AnyGrid::Listed(grid) => grid.outline(&stores, several, &mut first, out)?,
+                AnyGrid::Structured(grid) => {
+                    let (nodes, elements) = grid.counts();
+                    grid.outline(input, &stores, (first.node, first.element), out)?;
+                    first.node = first.node.saturating_add(nodes);
+                    first.element = first.element.saturating_add(elements);
+                }
+            }
+        }
+        Ok(())
     }
+}
+
+/// A grid whose numbers are found.
+enum AnyGrid {
+    /// Its elements are listed.
+    Listed(Ready),
+    /// They follow from its nodes.
+    Structured(Lattice),
+}
+
+/// Finds the numbers of a grid.
+fn find(input: &Input, grid: &Grid, files: &mut Files<'_>) -> Result<AnyGrid> {
+    let missing = |what: &str| {
+        let error = Error::malformed(format!("a grid with {what}"), "none");
+        Err(input.source.place(error, Spot::Text(grid.at)))
+    };
+    let Some(geometry) = &grid.geometry else { return missing("a Geometry") };
+    let Some(topology) = &grid.topology else { return missing("a Topology") };
+    Ok(match structured::axes_of(&topology.kind) {
+        Some(axes) => AnyGrid::Structured(Lattice::find(input, (geometry, topology), axes, files)?),
+        None => AnyGrid::Listed(Ready::find(input, grid.at, (geometry, topology), files)?),
+    })
 }
 
 /// Numbers that go on from grid to grid.
@@ -77,7 +112,7 @@ struct First {
     element: u64,
 }
 
-/// A grid whose numbers are found.
+/// A grid whose elements are listed.
 struct Ready {
     at: u64,
     coordinates: Vec<Found>,
@@ -100,13 +135,12 @@ fn refused(input: &Input, at: u64, what: impl Into<String>) -> Error {
 }
 
 impl Ready {
-    fn find(input: &Input, grid: &Grid, files: &mut Files<'_>) -> Result<Self> {
-        let missing = |what: &str| {
-            let error = Error::malformed(format!("a grid with {what}"), "none");
-            Err(input.source.place(error, Spot::Text(grid.at)))
-        };
-        let Some(geometry) = &grid.geometry else { return missing("a Geometry") };
-        let Some(topology) = &grid.topology else { return missing("a Topology") };
+    fn find(
+        input: &Input,
+        at: u64,
+        (geometry, topology): (&Geometry, &Topology),
+        files: &mut Files<'_>,
+    ) -> Result<Self> {
         let width = width(input, geometry)?;
         let mut coordinates = Vec::new();
         for item in &geometry.items {
@@ -118,7 +152,7 @@ impl Ready {
         };
         let cells = cells(input, topology)?;
         let (topology, base) = (files.find(item, false)?, topology.base);
-        Ok(Self { at: grid.at, coordinates, width, base, topology, cells })
+        Ok(Self { at, coordinates, width, base, topology, cells })
     }
 
     fn outline(self, stores: &Stores, several: bool, first: &mut First, out: &mut dyn Outline) -> Result<()> {

@@ -69,6 +69,58 @@ fn of_a_collection_over_time_the_first_is_read_and_of_one_over_space_all() {
     }
 }
 
+/// Two rows of three quadrilaterals; four hexahedra of 1 x 2 x 3.
+#[test]
+fn structured_topologies_imply_their_elements() {
+    let item = |numbers: &str| {
+        let count = numbers.split(' ').count();
+        format!("<DataItem Dimensions=\"{count}\" Precision=\"8\">{numbers}</DataItem>")
+    };
+    let grid = |kind: &str, dimensions: &str, of: &str, items: &[&str]| {
+        let items: String = items.iter().map(|numbers| item(numbers)).collect();
+        format!(
+            "<Grid><Topology TopologyType=\"{kind}\" Dimensions=\"{dimensions}\"/>\
+             <Geometry GeometryType=\"{of}\">{items}</Geometry></Grid>"
+        )
+    };
+    let listed = "0 0 1 0 2 0 3 0 0 1 1 1 2 1 3 1 0 2 1 2 2 2 3 2";
+    let flat = [
+        grid("2DSMesh", "3 4", "XY", &[listed]),
+        grid("2DRectMesh", "3 4", "VXVY", &["0 1 2 3", "0 1 2"]),
+        grid("2DCoRectMesh", "3 4", "ORIGIN_DXDY", &["0 0", "1 1"]),
+    ];
+    for text in &flat {
+        let mesh = read_bytes(&Xdmf, "a.xdmf", file(text).as_bytes()).expect("a mesh");
+        assert_eq!(testing::holds(&mesh), "12 nodes, Quadrilateral:6");
+        assert_eq!(mesh.elements[4].2, [[1., 1., 0.], [2., 1., 0.], [2., 2., 0.], [1., 2., 0.]]);
+    }
+    let solid = [
+        grid("3DRectMesh", "2 2 3", "VXVYVZ", &["5 6 7", "0 2", "1 4"]),
+        grid("3DCoRectMesh", "2 2 3", "ORIGIN_DXDYDZ", &["1 0 5", "3 2 1"]),
+    ];
+    for text in &solid {
+        let mesh = read_bytes(&Xdmf, "a.xdmf", file(text).as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(testing::holds(&mesh), "12 nodes, Hexahedron:2");
+        let ring = |z| [[6., 0., z], [7., 0., z], [7., 2., z], [6., 2., z]];
+        assert_eq!(mesh.elements[1].2, [ring(1.), ring(4.)].concat());
+    }
+    let both = format!("{}{}", flat[0], solid[1]);
+    let mesh = read_bytes(&Xdmf, "a.xdmf", file(&both).as_bytes()).expect("a mesh");
+    assert_eq!((mesh.nodes.count(), mesh.elements.len(), mesh.elements[7].0), (24, 8, 8));
+    let endless = grid("3DCoRectMesh", "99999999 99999999 99999999", "ORIGIN_DXDYDZ", &["0 0 0", "1 1 1"]);
+    assert!(message(&Xdmf, "a.xdmf", file(&endless).as_bytes()).contains("is over the limit"));
+}
+
+#[test]
+fn steps_that_fetch_the_mesh_before_them_are_the_same_mesh() {
+    let step = "<Grid><xi:include xpointer=\"xpointer(//Grid[@Name='mesh'])\"/><Time Value=\"0\"/></Grid>";
+    let series = format!("<Grid GridType=\"Collection\" CollectionType=\"Temporal\">{step}{step}</Grid>");
+    let mesh =
+        read_bytes(&Xdmf, "a.xdmf", file(&(grid(POINTS, CELLS) + &series)).as_bytes()).expect("a mesh");
+    assert_eq!(mesh.nodes.count(), 5);
+    assert!(message(&Xdmf, "a.xdmf", file(&series).as_bytes()).contains("an XInclude is not read"));
+}
+
 #[test]
 fn plain_binary_files_are_read_in_either_byte_order() {
     let cells = "<Topology TopologyType=\"Triangle\" BaseOffset=\"1\"><DataItem Dimensions=\"1 3\" NumberType=\"Int\" \
@@ -114,7 +166,11 @@ fn what_is_wrong_or_not_read_is_named() {
             grid(POINTS, &CELLS.replace("5 0 1", "99 0 1")),
             "expected the code of a known type for element 1, found 99",
         ),
-        (grid(POINTS, &CELLS.replace("Mixed", "3DSMesh")), "XDMF topology of the type 3dsmesh is not read"),
+        (grid(POINTS, &CELLS.replace("Mixed", "Polygon3")), "XDMF topology of the type polygon3 is not read"),
+        (
+            grid(POINTS, &CELLS.replace("Mixed", "3DSMesh")),
+            "expected 3 numbers of nodes in the attribute Dimensions, found 1",
+        ),
         (
             grid(POINTS, &CELLS.replace("<DataItem", "<DataItem ItemType=\"HyperSlab\"")),
             "line 6: a DataItem of the type hyperslab within a grid is not read in XDMF files",

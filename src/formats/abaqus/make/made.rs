@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::Store;
 use super::elements::Rows;
 use super::tables::Tables;
+use super::{Belonging, Store};
 use crate::error::{Error, Result};
 use crate::formats::abaqus::fields::LARGEST_NUMBER;
 use crate::formats::abaqus::placement::Affine;
@@ -148,8 +148,13 @@ impl MadeElements {
     }
 
     /// Yields the elements as those of an instance.
-    pub(in crate::formats::abaqus) fn yield_to(&self, out: &mut dyn Outline, scope: u64) -> Result<()> {
-        let layout = Arc::new(Scoped { made: self.clone(), scope });
+    pub(in crate::formats::abaqus) fn yield_to(
+        &self,
+        out: &mut dyn Outline,
+        scope: u64,
+        belonging: Belonging,
+    ) -> Result<()> {
+        let layout = Arc::new(Scoped { made: self.clone(), scope, belonging });
         // Of so many that are only counted nobody looks at the nodes.
         if let Elements::Rows(rows) = &self.what
             && matches!(rows.kind.of.class, Class::Counted(_))
@@ -174,6 +179,7 @@ impl MadeElements {
 struct Scoped {
     made: MadeElements,
     scope: u64,
+    belonging: Belonging,
 }
 
 impl ElementLayout for Scoped {
@@ -183,6 +189,7 @@ impl ElementLayout for Scoped {
 
     fn decode(&self, span: Range<u64>, out: &mut ElementSink<'_>) -> Result<()> {
         out.at = Spot::Text(self.made.at);
+        let sets = self.belonging.begin(out)?;
         let mut ids = Vec::new();
         for place in span {
             let (label, kind) = match &self.made.what {
@@ -195,6 +202,9 @@ impl ElementLayout for Scoped {
                     (record[0], kind)
                 }
             };
+            if let Some(sets) = &sets {
+                self.belonging.enter(sets, label, out)?;
+            }
             ids.iter_mut().for_each(|id| *id |= self.scope);
             out.element(label, &kind.of, &ids).map_err(crate::formats::abaqus::elements::plain_number)?;
         }

@@ -3,6 +3,7 @@
 //! What was defined before is noted as it goes by, and read only once such a keyword asks for it. What is expanded is what
 //! the keyword manual states without room for doubt; options beyond that are refused by name.
 
+mod belonging;
 mod elements;
 mod made;
 mod nodes;
@@ -15,13 +16,14 @@ use std::sync::Arc;
 
 use super::assembly::Block;
 use super::fields::Fields;
-use super::keywords::Keyword;
+use super::keywords::{Keyword, plain};
 use super::placement::Placement;
 use super::points::Row;
 use super::types::Kind;
 use crate::error::{Error, Result};
 use crate::input::{Budget, Input, Scratch, Source, Spot};
 
+pub(super) use belonging::{Belonging, Listed, SetsOfPart};
 pub(super) use made::{MadeElements, MadeNodes};
 pub(super) use sets::SetHead;
 use tables::Tables;
@@ -61,6 +63,8 @@ enum What {
 pub(super) struct Made {
     pub(super) nodes: Option<MadeNodes>,
     pub(super) elements: Vec<MadeElements>,
+    /// The set that they go to.
+    pub(super) set: Option<Arc<str>>,
 }
 
 impl Command {
@@ -175,7 +179,7 @@ impl Maker {
         rows: &[Row],
     ) -> Result<Made> {
         let (tables, set) = (&mut self.tables, command.set.as_deref());
-        let mut made = Made::default();
+        let mut made = Made { set: set.map(|set| plain(set).into()), ..Made::default() };
         match &command.what {
             What::Line { arc, framed } => {
                 made.nodes = Some(nodes::lines(tables, store, fields, set, (*arc, *framed))?)

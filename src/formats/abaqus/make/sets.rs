@@ -128,6 +128,16 @@ impl Set {
         self.ranges.as_ref().map(|ranges| ranges.iter().map(count).fold(0, u64::saturating_add))
     }
 
+    /// The members as first and last numbers of runs; none where they are not known.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (u64, u64)> {
+        self.ranges.iter().flatten().flat_map(|&[first, last, step]| {
+            let (length, step) = if step == 1 { (last - first, u64::MAX) } else { (0, step) };
+            (first..=last)
+                .step_by(usize::try_from(step).unwrap_or(usize::MAX))
+                .map(move |from| (from, from + length))
+        })
+    }
+
     /// The members, sorted unless the deck says otherwise.
     pub(super) fn members(&self) -> Vec<u64> {
         let ranges = self.ranges.iter().flatten();

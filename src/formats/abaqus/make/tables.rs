@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::Belonging;
 use super::elements::Rows;
 use super::sets::{Ranges, Set, SetHead};
 use crate::error::{Error, Result};
@@ -107,7 +108,7 @@ impl Tables {
         let lines = ElementLines {
             source: Arc::clone(&block.source),
             kind: kind.clone(),
-            region: None,
+            belonging: Belonging { owner: None, set: None, sets: Arc::default() },
             scope: 0,
             instances: None,
         };

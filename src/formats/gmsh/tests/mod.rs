@@ -147,3 +147,17 @@ fn damaged_corpus_files_are_errors_too() {
     let Some(corpus) = corpus() else { return };
     CORPUS.iter().for_each(|row| damage(&Gmsh, &corpus.join("gmsh").join(row.0), elements_end));
 }
+
+/// Files of the partitions that Gmsh splits a mesh into hold the elements of their neighbours too, in entities of their own.
+#[test]
+fn elements_of_other_partitions_are_left_out_and_counted() {
+    let rows = [("partition_1_of_2.msh", 92, 71), ("partition_2_of_2_bin.msh", 92, 68)];
+    for (name, own_tetrahedra, ghosts) in rows {
+        let mesh = testing::read_file(&Gmsh, &own(name));
+        assert_eq!(
+            (mesh.count(Shape::Tetrahedron), mesh.ledger.ghost_elements),
+            (own_tetrahedra, ghosts),
+            "{name}"
+        );
+    }
+}
