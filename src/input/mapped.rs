@@ -99,9 +99,9 @@ impl Drop for Window<'_> {
     fn drop(&mut self) {
         /// Below this a call costs more than the pages are worth.
         const WORTH: usize = 64 << 10;
-        /// The system maps the neighbours of a page along with it, in blocks of this size: with the first and last pages of
-        /// a window come some of the windows beside it, which may have been given back already.
-        const AROUND: usize = 64 << 10;
+        /// The system maps the neighbours of a page along with it, up to a large page: with the first and last pages of a
+        /// window come some of the windows beside it, which may have been given back already.
+        const AROUND: usize = 2 << 20;
         if self.range.len() >= WORTH
             && let Some(map) = &self.mapped.map
         {
