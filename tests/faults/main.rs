@@ -17,6 +17,7 @@ mod many;
 mod names;
 mod operators;
 mod oracle;
+mod pairs;
 mod power;
 mod readers;
 mod tools;

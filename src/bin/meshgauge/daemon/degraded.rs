@@ -6,6 +6,9 @@ use std::time::{Duration, Instant};
 
 use rusqlite::ffi;
 
+use super::log::Event;
+use super::watching::Watching;
+
 /// How often we look whether there is room again.
 const BETWEEN_TRIES: Duration = Duration::from_secs(2);
 
@@ -31,6 +34,52 @@ impl Degraded {
     pub fn again(&mut self, error: &anyhow::Error) {
         self.reason = format!("{error:#}");
         self.next_try = Instant::now() + BETWEEN_TRIES;
+    }
+}
+
+impl Watching<'_> {
+    /// Lets an error that may pass pass: the daemon goes on without claiming anything, until there is room again. A run
+    /// that is to end cannot wait.
+    pub(super) fn bear<T>(&mut self, result: anyhow::Result<T>) -> anyhow::Result<Option<T>> {
+        let error = match result {
+            Ok(value) => return Ok(Some(value)),
+            Err(error) if self.mode.once || !may_pass(&error) => return Err(error),
+            Err(error) => error,
+        };
+        match &mut self.degraded {
+            Some(degraded) => degraded.again(&error),
+            None => {
+                tracing::error!("no mesh is claimed until this passes: {error:#}");
+                self.degraded = Some(Degraded::new(&error));
+                self.telemetry.degraded("storage", Some(format!("nothing is claimed: {error:#}")));
+                self.tell();
+            }
+        }
+        Ok(None)
+    }
+
+    /// Finds out whether there is room again, and does what could not be done.
+    pub(super) fn recover(&mut self) -> anyhow::Result<()> {
+        if self.degraded.as_ref().is_none_or(|degraded| Instant::now() < degraded.next_try) {
+            return Ok(());
+        }
+        let room = self.record.find_room();
+        if self.bear(room)?.is_none() {
+            return Ok(());
+        }
+        let Some(degraded) = self.degraded.take() else { return Ok(()) };
+        self.telemetry.degraded("storage", None);
+        let resumed = Event::warn("daemon.resumed")
+            .with("reason", degraded.reason.as_str())
+            .with("seconds", degraded.since.elapsed().as_secs_f64());
+        let told = self.record.event(resumed);
+        self.bear(told)?;
+        self.put_down()?;
+        // What was come upon meanwhile was not put down.
+        let now = Instant::now();
+        self.scanners.each().for_each(|mount| mount.next_scan = now);
+        self.tell();
+        Ok(())
     }
 }
 
