@@ -31,6 +31,19 @@ const UNSEEN: &[(&str, Unseen, &str)] = &[
     ("su2", |_, lost| starts_with_any(lost, &["NMARK"]), "markers are the boundary, which may be left out"),
     ("triangle", in_last_comment, "a comment says who wrote the file"),
     ("tetgen", in_last_comment, "a comment says who wrote the file"),
+    (
+        "medit",
+        |_, lost| lost.len() < 8 && lost.iter().all(|b| *b == 0),
+        "after End there is no next keyword: zeros",
+    ),
+    ("vtk", |kept, _| contains(kept, b"METADATA"), "metadata of data come after the mesh"),
+    (
+        "comsol",
+        |kept, lost| last_line(kept).contains(&b'#') && !lost.trim_ascii().contains(&b'\n'),
+        "a comment ends the file",
+    ),
+    ("vtk", within_data, "the last of the data is still a number without its last digits"),
+    ("nastran", |kept, _| last_line(kept).starts_with(b"$"), "a comment says nothing of the mesh"),
     ("medit", between_tables, "End may be missing, and any table may be the last"),
     ("obj", after_first_face, "there are no counts and no end mark: a file may well end with any face"),
     ("ansys", outside_blocks, "an archive may well end after any EBLOCK"),
@@ -77,7 +90,7 @@ fn within_last_number(_: &[u8], lost: &[u8]) -> bool {
 
 fn in_elements_at_end_of_line(kept: &[u8], lost: &[u8]) -> bool {
     let elements = memchr::memmem::find(kept, b"*ELEMENT").is_some_and(|at| kept[at..].contains(&b'\n'));
-    elements && (kept.ends_with(b"\n") || lost.starts_with(b"\n") || lost.starts_with(b"\r"))
+    elements && (ends_line(kept, lost) || lost.starts_with(b"\r"))
 }
 
 /// The keyword that the cut is in is no mesh, and none that is lost is.
@@ -107,8 +120,19 @@ fn in_last_comment(kept: &[u8], lost: &[u8]) -> bool {
     line.starts_with(b"#") || (line.is_empty() && lost.starts_with(b"#"))
 }
 
+/// Blanks of the next line say no more than its start.
 fn ends_line(kept: &[u8], lost: &[u8]) -> bool {
-    kept.ends_with(b"\n") || lost.starts_with(b"\n")
+    last_line(kept).trim_ascii().is_empty() || lost.starts_with(b"\n")
+}
+
+fn last_line(kept: &[u8]) -> &[u8] {
+    kept.rsplit(|b| *b == b'\n').next().unwrap_or_default()
+}
+
+/// Among the text of data that come after the mesh, within a number.
+fn within_data(kept: &[u8], lost: &[u8]) -> bool {
+    let is_of_number = |b: Option<&u8>| b.is_some_and(|b| b.is_ascii_digit() || *b == b'.');
+    contains(kept, b"_DATA ") && is_of_number(kept.last()) && is_of_number(lost.first())
 }
 
 fn after_first_face(kept: &[u8], lost: &[u8]) -> bool {

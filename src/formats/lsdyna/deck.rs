@@ -53,11 +53,15 @@ enum Open {
     Elements(Arc<ElementCards>),
 }
 
-/// Where `*END` is missing, the last card must not end within a number. In fixed columns it may lack a line end.
-fn ends_with_whole_field(source: &Source) -> Result<()> {
+/// Where `*END` is missing, the last card must be whole. In fixed columns it may lack the end of its line, if it is as long
+/// as the card before: what was cut off between two numbers may well be an element of fewer nodes.
+fn ends_with_whole_card(source: &Source) -> Result<()> {
     let len = source.len();
-    let card = source.peek(len.saturating_sub(256)..len).rsplit(|b| *b == b'\n').next().unwrap_or_default();
-    if is_comment(card) || (card.len().is_multiple_of(8) && !card.contains(&b',')) {
+    let mut lines =
+        source.peek(len.saturating_sub(1024)..len).rsplit(|b| *b == b'\n').map(<[u8]>::trim_ascii_end);
+    let (card, before) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
+    let is_whole = card.len() == before.len() && card.len().is_multiple_of(8) && !card.contains(&b',');
+    if is_comment(card) || card.is_empty() || is_whole {
         return Ok(());
     }
     Err(source.malformed_text(len, "the end of the line of the last card, or *END"))
@@ -93,7 +97,7 @@ impl<'a> Deck<'a> {
                     self.piece(&open, span)?;
                 }
                 let Some(line) = line else {
-                    return if matches!(open, Open::Other) { Ok(()) } else { ends_with_whole_field(source) };
+                    return if matches!(open, Open::Other) { Ok(()) } else { ends_with_whole_card(source) };
                 };
                 let keyword = Keyword::read(line.bytes);
                 if keyword.name == "END" {

@@ -190,3 +190,16 @@ fn damaged_decks_are_read_or_refused() {
     // A deck has no end mark that it must have: cuts among the elements show by luck only.
     damage(&Lsdyna, &own("lsdyna").join("gmsh_mixed.key"), |_| 1125);
 }
+
+#[test]
+fn a_card_that_was_cut_off_between_two_numbers_is_an_error() {
+    let node = |id: u32, x: u32, y: u32, z: u32| format!("{id:8}{x:16}{y:16}{z:16}\n");
+    let nodes: String = (0..8).map(|k| node(k + 1, ((k >> 1) ^ k) & 1, (k >> 1) & 1, k >> 2)).collect();
+    let card = |numbers: [u32; 10]| numbers.map(|number| format!("{number:8}")).concat();
+    let element = card([1, 1, 1, 2, 3, 4, 5, 6, 7, 8]);
+    let deck = format!("*KEYWORD\n*NODE\n{nodes}*ELEMENT_SOLID\n{element}\n{element}");
+    let read = |text: &str| read_bytes(&Lsdyna, "a.k", text.as_bytes());
+    assert_eq!(read(&deck).expect("whole").elements.len(), 2);
+    let error = read(&deck[..deck.len() - 32]).expect_err("cut off").to_string();
+    assert!(error.contains("the end of the line of the last card"), "{error}");
+}
