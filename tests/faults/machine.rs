@@ -183,7 +183,8 @@ fn t40_a_long_run_takes_no_more_memory_and_files_than_a_short_one() {
         *outcomes.entry(id).or_insert(0) += count;
     }
     assert!(outcomes.values().all(|&count| count == 1), "a version has two outcomes");
-    assert!(late.0 <= early.0 + 2048, "{} KiB of private memory became {}", early.0, late.0);
+    // The pages that SQLite keeps in memory come to 2 MiB, and are not all there from the start.
+    assert!(late.0 <= early.0 + 4096, "{} KiB of private memory became {}", early.0, late.0);
     assert!(late.1 <= early.1 + 4 && late.2 <= early.2, "files and workers: {early:?} became {late:?}");
     done(
         "T40",

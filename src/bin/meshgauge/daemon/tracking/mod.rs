@@ -13,7 +13,7 @@ use crate::identity::Identity;
 use crate::status::Waits;
 
 /// So many files are minded at a time, whatever the drop holds; the others come up in a later scan.
-const MOST: usize = 50_000;
+const MOST: usize = 32_000;
 
 /// A file that is not done with.
 #[derive(Debug)]
