@@ -184,7 +184,7 @@ def mmg_space(problem, size):
     if problem.startswith("pit:"):
         pit = Pit(problem)
         mesh.set_field("metric", numpy.array([[1.2 * pit.size(size, *point)] for point in start]))
-        mesh.remesh(hausd=0.02 * pit.mouth, hgrad=1.3, verbose=-1)
+        mesh.remesh(hausd=0.1 * pit.mouth, hgrad=1.3, verbose=-1)
     else:
         mesh.remesh(hmax=1.3 * size, hmin=0.5 * size, hausd=0.05 * size, verbose=-1)
     return mesh.get_vertices(), [("Tetrahedra", mesh.get_tetrahedra())]

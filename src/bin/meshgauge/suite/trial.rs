@@ -34,6 +34,9 @@ struct Made {
     nodes: u64,
 }
 
+/// How much larger or smaller the next size may be: two runs can say little of one far away.
+const LARGEST_STEP: f64 = 2.0;
+
 impl Trial<'_> {
     /// The row, from the results where it stands there already.
     pub fn carry_out(&self, versions: &mut Versions) -> anyhow::Result<Scored> {
@@ -104,7 +107,8 @@ impl Trial<'_> {
             }
             let growth = self.growth((size, nodes), last);
             last = Some((size, nodes));
-            size *= (nodes.max(1) as f64 / self.middle()).powf(1.0 / growth);
+            let step = (nodes.max(1) as f64 / self.middle()).powf(1.0 / growth);
+            size *= step.clamp(1.0 / LARGEST_STEP, LARGEST_STEP);
         }
         let Some(made) = best else { return Ok(None) };
         self.fill(row, &made);
