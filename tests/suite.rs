@@ -86,6 +86,13 @@ title = "One that meshes something else"
 version = ["echo", "1.0"]
 output = "msh"
 run.disc = ["{meshgauge}", "generate", "fd-cylinder", "rings=2", "-q", "-o", "{output}"]
+
+[[generator]]
+name = "smaller"
+title = "One that meshes another disc"
+version = ["echo", "1.0"]
+output = "msh"
+run.disc = ["{meshgauge}", "generate", "mapped-disc", "radius=20", "divisions=14", "-q", "-o", "{output}"]
 "#;
 
 /// Makes `round(15 / size) + 5` divisions and notes that it was run.
@@ -139,6 +146,7 @@ fn every_generator_is_a_row_that_says_what_became_of_it() {
     assert!(told("silent").1.starts_with("wrote no "), "{:?}", told("silent"));
     assert_eq!(told("slow").0, "timed-out");
     assert_eq!(told("garbage").0, "unreadable");
+    assert_eq!(told("smaller"), ("wrong-domain".into(), "the mesh's area is off by -36.1 %".into()));
     assert_eq!(told("solid"), ("unreadable".into(), "the mesh has 3 dimensions".into()));
 
     let good = &rows[0];

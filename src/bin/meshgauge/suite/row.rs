@@ -57,6 +57,8 @@ pub enum Outcome {
     TimedOut,
     /// What it wrote is no mesh that could be read.
     Unreadable,
+    /// What it wrote fills something else: its area or volume is far from the problem's.
+    WrongDomain,
 }
 
 impl Outcome {
@@ -75,6 +77,7 @@ impl fmt::Display for Outcome {
             Outcome::Failed => "failed",
             Outcome::TimedOut => "timed out",
             Outcome::Unreadable => "unreadable",
+            Outcome::WrongDomain => "wrong domain",
         })
     }
 }

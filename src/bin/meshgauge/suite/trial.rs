@@ -37,6 +37,14 @@ struct Made {
 /// How much larger or smaller the next size may be: two runs can say little of one far away.
 const LARGEST_STEP: f64 = 2.0;
 
+/// How far off the true area or volume a mesh may be. What a coarse polygon lacks of its circle is far less.
+const FAR_OFF: f64 = 0.1;
+
+/// The mesh's area or volume beside the true one.
+fn relative_error(summary: &Summary) -> Option<f64> {
+    summary.expected.as_ref().map(|expected| expected.relative_error)
+}
+
 impl Trial<'_> {
     /// The row, from the results where it stands there already.
     pub fn carry_out(&self, versions: &mut Versions) -> anyhow::Result<Scored> {
@@ -163,6 +171,11 @@ impl Trial<'_> {
             let reason = format!("the mesh has {} dimensions", summary.dimension());
             return Ok(self.without(row, Outcome::Unreadable, reason));
         }
+        if let Some(error) = relative_error(&summary).filter(|error| error.abs() > FAR_OFF) {
+            let what = if self.problem.volume.is_some() { "volume" } else { "area" };
+            let reason = format!("the mesh's {what} is off by {:.1} %", 100.0 * error);
+            return Ok(self.without(row, Outcome::WrongDomain, reason));
+        }
         let nodes = summary.nodes.count - summary.nodes.unused;
         Ok(Some(Made { size, ran, command, summary, nodes }))
     }
@@ -197,7 +210,7 @@ impl Trial<'_> {
         row.peak_rss_bytes = Some(made.ran.peak_rss_bytes);
         row.nodes = Some(made.nodes);
         row.elements = Some(made.summary.main_shapes().map(|(_, found)| found.count).sum());
-        row.relative_error = made.summary.expected.as_ref().map(|expected| expected.relative_error);
+        row.relative_error = relative_error(&made.summary);
     }
 
     fn is_in_window(&self, nodes: u64) -> bool {
