@@ -56,7 +56,12 @@ fn a_running_daemon_tells_what_it_is_at() {
     site.write("drop/a.msh", MESH);
     site.write("drop/b.msh", MESH);
     daemon.wait_for("mesh.claimed", "a.msh");
-    daemon.wait("b to be queued", || json(&site).1["status"]["queue"]["queued"] == 1);
+    // The file that is looked at may be older than the claim, with `a` still in the queue.
+    daemon.wait("a to run and b to be queued", || {
+        let (_, told) = json(&site);
+        let told = &told["status"];
+        told["running"][0]["mesh"] == "a.msh" && told["queue"]["queued"] == 1
+    });
     let (code, told) = json(&site);
     assert_eq!((code, &told["health"]), (Some(0), &"well".into()), "{told}");
     let told = &told["status"];
