@@ -9,7 +9,7 @@ use super::vtu_array::{Array, WholeArray};
 use super::{Columns, Target};
 use crate::error::{Error, Result};
 use crate::input::{Scratch, ScratchFile};
-use crate::mesh::{ElementWriter, Nodes, ScoredElement, Shape};
+use crate::mesh::{ElementWriter, Nodes, ScoredElement};
 
 /// Columns of real numbers before those of the measures: of a surface the extent is its area, of a solid its volume.
 const REALS: [&str; 2] = ["size", "extent"];
@@ -88,7 +88,7 @@ impl Cells {
         }
         self.end += element.corners.len() as i64;
         self.offsets.push(self.end.to_le_bytes())?;
-        self.types.push([cell_type(element.shape)])?;
+        self.types.push([element.shape.facts().vtk_cell])?;
         self.labels.push((element.label as i64).to_le_bytes())?;
         let region = element.region.map_or(0, |name| self.region(name));
         self.regions.push(region.to_le_bytes())?;
@@ -143,18 +143,6 @@ impl Cells {
             topology: [connectivity.end()?, self.offsets.end()?, self.types.end()?],
             cell_data,
         })
-    }
-}
-
-/// The type that VTK has for a shape.
-fn cell_type(shape: Shape) -> u8 {
-    match shape {
-        Shape::Triangle => 5,
-        Shape::Quadrilateral => 9,
-        Shape::Tetrahedron => 10,
-        Shape::Hexahedron => 12,
-        Shape::Wedge => 13,
-        Shape::Pyramid => 14,
     }
 }
 

@@ -30,6 +30,8 @@ pub enum Shape {
 pub struct Facts {
     /// The shape's name in summaries.
     pub name: &'static str,
+    /// The number that VTK, and SU2 after it, give the linear cell.
+    pub vtk_cell: u8,
     /// Number of corner nodes.
     pub corners: usize,
     /// 2 for surfaces, 3 for solids.
@@ -97,6 +99,7 @@ impl fmt::Display for Shape {
 
 static TRIANGLE: Facts = Facts {
     name: "triangle",
+    vtk_cell: 5,
     corners: 3,
     dimension: 2,
     edges: &[[0, 1], [1, 2], [2, 0]],
@@ -106,6 +109,7 @@ static TRIANGLE: Facts = Facts {
 
 static QUADRILATERAL: Facts = Facts {
     name: "quadrilateral",
+    vtk_cell: 9,
     corners: 4,
     dimension: 2,
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0]],
@@ -115,6 +119,7 @@ static QUADRILATERAL: Facts = Facts {
 
 static TETRAHEDRON: Facts = Facts {
     name: "tetrahedron",
+    vtk_cell: 10,
     corners: 4,
     dimension: 3,
     edges: &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]],
@@ -124,6 +129,7 @@ static TETRAHEDRON: Facts = Facts {
 
 static PYRAMID: Facts = Facts {
     name: "pyramid",
+    vtk_cell: 14,
     corners: 5,
     dimension: 3,
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]],
@@ -133,6 +139,7 @@ static PYRAMID: Facts = Facts {
 
 static WEDGE: Facts = Facts {
     name: "wedge",
+    vtk_cell: 13,
     corners: 6,
     dimension: 3,
     edges: &[[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3], [0, 3], [1, 4], [2, 5]],
@@ -142,6 +149,7 @@ static WEDGE: Facts = Facts {
 
 static HEXAHEDRON: Facts = Facts {
     name: "hexahedron",
+    vtk_cell: 12,
     corners: 8,
     dimension: 3,
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]],

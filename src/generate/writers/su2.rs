@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use super::vtk::cell_type;
 use super::{Encoding, Writer};
 use crate::generate::Problem;
 
@@ -21,7 +20,7 @@ fn write(problem: &Problem, _: Encoding, out: &mut dyn Write) -> io::Result<()> 
     let mut element = 0_u64;
     for block in mesh.blocks() {
         mesh.each_element(block.shape, &mut |corners| {
-            write!(out, "{}", cell_type(block.shape))?;
+            write!(out, "{}", block.shape.facts().vtk_cell)?;
             corners.iter().try_for_each(|corner| write!(out, " {corner}"))?;
             writeln!(out, " {element}")?;
             element += 1;

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 
 use super::{Encoding, Writer};
 use crate::generate::Problem;
-use crate::mesh::Shape;
 
 pub(super) const WRITER: Writer = Writer {
     name: "vtk",
@@ -14,18 +13,6 @@ pub(super) const WRITER: Writer = Writer {
     encodings: &[Encoding::Binary, Encoding::Text],
     write,
 };
-
-/// The number that VTK, and SU2 after it, give the linear cell of a shape.
-pub(super) fn cell_type(shape: Shape) -> u8 {
-    match shape {
-        Shape::Triangle => 5,
-        Shape::Quadrilateral => 9,
-        Shape::Tetrahedron => 10,
-        Shape::Hexahedron => 12,
-        Shape::Wedge => 13,
-        Shape::Pyramid => 14,
-    }
-}
 
 /// The longest title that a reader must take.
 const TITLE: usize = 200;
@@ -57,7 +44,7 @@ fn write(problem: &Problem, encoding: Encoding, out: &mut dyn Write) -> io::Resu
     }
     writeln!(out.out, "\nCELL_TYPES {count}")?;
     for block in &blocks {
-        let number = i32::from(cell_type(block.shape));
+        let number = i32::from(block.shape.facts().vtk_cell);
         (0..block.elements).try_for_each(|_| out.record([(number.to_be_bytes(), number)]))?;
     }
     writeln!(out.out)

@@ -4,7 +4,6 @@ use std::io::{self, Write};
 
 use flate2::write::ZlibEncoder;
 
-use super::vtk::cell_type;
 use super::{Encoding, Writer};
 use crate::generate::{MeshSource, Problem};
 
@@ -70,7 +69,7 @@ impl Array {
                     out.write_all(&end.to_le_bytes())
                 })?,
                 Array::Types => {
-                    (0..block.elements).try_for_each(|_| out.write_all(&[cell_type(block.shape)]))?;
+                    (0..block.elements).try_for_each(|_| out.write_all(&[block.shape.facts().vtk_cell]))?;
                 }
             }
         }

@@ -138,28 +138,16 @@ impl Record {
 
     /// Whether nothing is left to do for this version.
     pub fn is_done(&mut self, path: &Path, identity: &Identity) -> anyhow::Result<bool> {
-        let id = Id::of(path, identity);
-        if self.done.contains(id) {
-            return Ok(true);
-        }
-        let done = self.state.is_done(id)?;
-        if done {
-            self.done.insert(id);
-        }
-        Ok(done)
+        is_done(&mut self.done, &self.state, Id::of(path, identity))
     }
 
     /// Which of these versions something is left to do for. To ask about many at a time is what makes a scan of many files
     /// quick.
     pub fn undone<T>(&mut self, versions: Vec<T>, id: impl Fn(&T) -> Id) -> anyhow::Result<Vec<T>> {
-        let mut left: Vec<_> = versions.into_iter().map(|version| (id(&version), version)).collect();
-        left.retain(|(id, _)| !self.done.contains(*id));
         let reading = self.state.begin()?;
-        let mut undone = Vec::with_capacity(left.len());
-        for (id, version) in left {
-            if self.state.is_done(id)? {
-                self.done.insert(id);
-            } else {
+        let mut undone = Vec::new();
+        for version in versions {
+            if !is_done(&mut self.done, &self.state, id(&version))? {
                 undone.push(version);
             }
         }
@@ -206,6 +194,18 @@ impl Record {
         }
         Ok(())
     }
+}
+
+/// Whether nothing is left to do for a version: as far as we remember, or else as the database has it.
+fn is_done(done: &mut Done, state: &State, id: Id) -> anyhow::Result<bool> {
+    if done.contains(id) {
+        return Ok(true);
+    }
+    let is_done = state.is_done(id)?;
+    if is_done {
+        done.insert(id);
+    }
+    Ok(is_done)
 }
 
 /// Makes the folders that are written to.
